@@ -1,0 +1,78 @@
+#include "solver/sequence/config.h"
+
+#include <array>
+#include <string>
+
+#include "solver/base/error.h"
+
+namespace afterglow {
+
+namespace {
+
+constexpr std::array<Method, 2> all_methods{{
+    {"full", Visibility::retrace, Solution::progressive, "everything traced and solved anew at every frame"},
+    {"baum86", Visibility::back_buffer, Solution::progressive,
+     "static background kept, actors traced, solved anew"},
+}};
+
+template <class Value>
+struct Named {
+    std::string_view name;
+    Value value;
+};
+constexpr std::array<Named<Visibility>, 2> visibilities{{
+    {"retrace", Visibility::retrace},
+    {"back-buffer", Visibility::back_buffer},
+}};
+constexpr std::array<Named<Solution>, 1> solutions{{{"progressive", Solution::progressive}}};
+constexpr std::array<Named<Quality>, 3> qualities{{
+    {"draft", Quality::draft},
+    {"preview", Quality::preview},
+    {"final", Quality::final},
+}};
+
+/// The entry of a table with a given name, or an error that lists the names there are.
+template <class Table>
+const auto& entry_named(const Table& table, std::string_view name, const char* kind) {
+    std::string names;
+    for (const auto& entry : table) {
+        if (entry.name == name) return entry;
+        if (!names.empty()) names += ", ";
+        names += entry.name;
+    }
+    throw Error(ErrorKind::not_found, kind,
+                "there is no " + std::string(kind) + " \"" + std::string(name) + "\"; there are: " + names);
+}
+
+template <class Table, class Value>
+std::string_view name_in(const Table& table, Value value) {
+    for (const auto& entry : table)
+        if (entry.value == value) return entry.name;
+    return "unknown";
+}
+
+}  // namespace
+
+std::span<const Method> methods() {
+    return all_methods;
+}
+const Method& method_named(std::string_view name) {
+    return entry_named(all_methods, name, "method");
+}
+Visibility visibility_named(std::string_view name) {
+    return entry_named(visibilities, name, "visibility").value;
+}
+Solution solution_named(std::string_view name) {
+    return entry_named(solutions, name, "solution").value;
+}
+Quality quality_named(std::string_view name) {
+    return entry_named(qualities, name, "quality").value;
+}
+std::string_view name_of(Visibility visibility) {
+    return name_in(visibilities, visibility);
+}
+std::string_view name_of(Solution solution) {
+    return name_in(solutions, solution);
+}
+
+}  // namespace afterglow

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace afterglow {
+
+/// How each frame learns which patch every sight line sees.
+enum class Visibility {
+    retrace,      ///< static and moving geometry traced anew: the yardstick
+    back_buffer,  ///< Baum et al. 1986: only the actors are traced, up to the static background
+};
+
+/// How each frame's light is solved.
+enum class Solution {
+    progressive,  ///< Cohen et al. 1988: shooting, cold every frame
+};
+
+/// Samples per pixel and the like, in three steps.
+enum class Quality {
+    draft,    ///< 1 camera sample a pixel
+    preview,  ///< 4
+    final,    ///< 16
+};
+
+/// Settings of a job. What a frame finally is depends on these only, never on the clock or the number of
+/// threads.
+struct SequenceConfig {
+    Visibility visibility = Visibility::back_buffer;  ///< see Visibility
+    Solution solution = Solution::progressive;        ///< see Solution
+    int rays_per_patch = 256;  ///< sight lines of a patch, 16 to 65,536, rounded up to a multiple of 16
+    std::optional<double> patch_size_m;  ///< target patch edge; chosen from the scene's size where not given
+    double asked_error = 0.02;           ///< relative error at which a solution is finished, in (0, 1)
+    Quality quality = Quality::preview;  ///< see Quality
+    int width = 640;                     ///< pixels, 1 to 16,384
+    int height = 360;                    ///< pixels, 1 to 16,384
+    std::string camera;                  ///< by name; empty: the first
+    double frames_per_second = 0;        ///< frame n shows time n / fps; 0: the scene's own
+    std::optional<double>
+        exposure_ev;         ///< stops added to the automatic exposure's neutral 0; automatic where not given
+    std::uint64_t seed = 1;  ///< of every random choice
+    std::filesystem::path cache_folder;  ///< static rows are kept here; empty: not kept
+};
+
+/// A named method as in the literature: a visibility and a solution.
+struct Method {
+    std::string_view name;
+    Visibility visibility;
+    Solution solution;
+    std::string_view description;
+};
+
+/// All named methods. Lookups by name: errors are not_found and list the names there are.
+std::span<const Method> methods();
+const Method& method_named(std::string_view name);
+Visibility visibility_named(std::string_view name);
+Solution solution_named(std::string_view name);
+Quality quality_named(std::string_view name);
+std::string_view name_of(Visibility visibility);
+std::string_view name_of(Solution solution);
+
+}  // namespace afterglow

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "solver/base/context.h"
+#include "solver/base/pixels.h"
+#include "solver/scene/world.h"
+#include "solver/sequence/config.h"
+
+namespace afterglow {
+
+using Milliseconds = std::chrono::duration<double, std::milli>;
+
+/// What one frame cost and how good it is (the `frames` entries of a report).
+struct FrameStatistics {
+    int frame = 0;
+    Milliseconds visibility{}, solve{}, image{}, total{};
+    std::uint64_t rays_traced = 0;
+    std::uint64_t visibility_changes = 0;  ///< sight lines that see another patch than in the previous frame
+    std::uint64_t shots = 0;
+    std::uint64_t active_patches = 0;
+    double residual = 0;     ///< largest residual relative to the mean of ρH over non-emitters
+    double error_bound = 0;  ///< the certificate: residual / (1 − gain)
+};
+
+/// What the whole job cost before its frames.
+struct SequenceStatistics {
+    std::uint64_t patches = 0;        ///< all
+    std::uint64_t actor_patches = 0;  ///< of them, on actors
+    std::uint64_t sight_lines = 0;
+    int rays_per_patch = 0;
+    Milliseconds setup{};        ///< meshing and acceleration structures
+    Milliseconds static_pass{};  ///< sight lines against the furniture, or reading them from the cache
+    bool static_from_cache = false;
+};
+
+/// A picture on its way to a frame: linear radiance, and the same ready to be shown.
+struct Revision {
+    int frame = 0;
+    int revision = 0;     ///< counts from 1 within its frame
+    bool final = false;   ///< the last one of its frame
+    double residual = 0;  ///< as in FrameStatistics
+    Picture radiance;
+    std::vector<std::uint8_t> srgb;  ///< width × height × 3
+};
+using RevisionSink = std::function<void(const Revision&)>;
+
+/// Everything a job keeps from frame to frame. Movable; one thread at a time.
+class SequenceState {
+  public:
+    SequenceState(SequenceState&&) noexcept;
+    SequenceState& operator=(SequenceState&&) noexcept;
+    ~SequenceState();
+
+    [[nodiscard]] const SequenceStatistics& statistics() const;
+    [[nodiscard]] const Warnings& warnings() const;
+
+    struct Parts;
+    explicit SequenceState(std::unique_ptr<Parts> parts);
+    [[nodiscard]] Parts& parts() { return *parts_; }
+
+  private:
+    std::unique_ptr<Parts> parts_;
+};
+
+/// Meshes the world and prepares its acceleration structures. The static pass itself happens within the first
+/// `step`, where coarse pictures can already be shown. Errors: invalid_input naming a setting; not_found for
+/// a camera; cannot_converge where the gain is 1 or more; cancelled.
+SequenceState make_state(World world, const SequenceConfig& config, const Context& context);
+
+/// Computes one frame (0 or more, in any order). `on_revision` gets each better picture, the last one marked
+/// final; the same thread calls it. It may be empty, and then no preliminary pictures are made; the final
+/// picture does not depend on that. Errors: cancelled leaves the state usable for another step.
+FrameStatistics step(SequenceState& state, int frame, const RevisionSink& on_revision,
+                     const Context& context);
+
+/// One call for a range of frames, first and last included.
+std::vector<FrameStatistics> render_sequence(World world, const SequenceConfig& config, int first_frame,
+                                             int last_frame, const RevisionSink& on_revision,
+                                             const Context& context = Context());
+
+/// The last frame of an animation: the last one that shows a time not after the scene's duration.
+int last_frame_of(const World& world, const SequenceConfig& config);
+
+}  // namespace afterglow
