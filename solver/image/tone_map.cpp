@@ -1,0 +1,74 @@
+#include "solver/image/tone_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace afterglow {
+
+namespace {
+
+constexpr double middle_grey = 0.18;
+constexpr double trimmed_share = 0.1;  // at each end
+constexpr double largest_ev = 64;
+
+void require_finite(const Picture& picture, std::size_t pixel) {
+    const Rgb& c = picture.pixels[pixel];
+    if (is_finite(c)) return;
+    const auto width = static_cast<std::size_t>(picture.width);
+    throw std::logic_error("pixel (" + std::to_string(pixel % width) + ", " + std::to_string(pixel / width) +
+                           ") of the picture is not finite: " + std::to_string(c.r) + ", " +
+                           std::to_string(c.g) + ", " + std::to_string(c.b));
+}
+
+double luminance(const Rgb& c) {
+    return 0.2126 * double{c.r} + 0.7152 * double{c.g} + 0.0722 * double{c.b};
+}
+
+std::uint8_t code(float linear, double gain) {
+    return static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(double{linear} * gain)));
+}
+
+}  // namespace
+
+double srgb_encoded(double linear) {
+    const double v = std::clamp(linear, 0.0, 1.0);
+    return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+}
+
+float automatic_exposure_ev(const Picture& picture) {
+    std::vector<double> stops;
+    stops.reserve(picture.pixels.size());
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        require_finite(picture, i);
+        const double y = luminance(picture.pixels[i]);
+        if (y > 0) stops.push_back(std::log2(y));
+    }
+    if (stops.empty()) return 0;
+
+    // Sorted before summing, so that the sum does not depend on where in the picture a tone stands.
+    std::sort(stops.begin(), stops.end());
+    const auto trimmed =
+        static_cast<std::ptrdiff_t>(std::floor(trimmed_share * static_cast<double>(stops.size())));
+    const auto first = stops.begin() + trimmed;
+    const auto last = stops.end() - trimmed;
+    const double mean = std::accumulate(first, last, 0.0) / static_cast<double>(last - first);
+    return static_cast<float>(std::clamp(std::log2(middle_grey) - mean, -largest_ev, largest_ev));
+}
+
+std::vector<std::uint8_t> to_srgb(const Picture& picture, float exposure_ev) {
+    const double gain = std::exp2(double{exposure_ev});
+    std::vector<std::uint8_t> rgb(picture.pixels.size() * 3);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        require_finite(picture, i);
+        const Rgb& c = picture.pixels[i];
+        rgb[3 * i] = code(c.r, gain);
+        rgb[3 * i + 1] = code(c.g, gain);
+        rgb[3 * i + 2] = code(c.b, gain);
+    }
+    return rgb;
+}
+
+}  // namespace afterglow
