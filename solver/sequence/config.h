@@ -27,6 +27,12 @@ enum class Quality {
     final,    ///< 16
 };
 
+/// Which pictures of a frame are made and handed over. The final one is the same either way.
+enum class Revisions {
+    all,         ///< coarse ones first, for somebody who watches
+    final_only,  ///< none but the final one: less work
+};
+
 /// Settings of a job. What a frame finally is depends on these only, never on the clock or the number of
 /// threads.
 struct SequenceConfig {
@@ -43,7 +49,8 @@ struct SequenceConfig {
     std::optional<double>
         exposure_ev;         ///< stops added to the automatic exposure's neutral 0; automatic where not given
     std::uint64_t seed = 1;  ///< of every random choice
-    std::filesystem::path cache_folder;  ///< static rows are kept here; empty: not kept
+    Revisions revisions = Revisions::all;  ///< see Revisions
+    std::filesystem::path cache_folder;    ///< static rows are kept here; empty: not kept
 };
 
 /// A named method as in the literature: a visibility and a solution.
