@@ -1,0 +1,50 @@
+#include "solver/radiosity/exchange.h"
+
+namespace afterglow {
+
+namespace {
+
+using DoubleVector = double __attribute__((vector_size(32)));
+
+Lanes::Vector gather_row(const FormFactorMatrix& matrix, std::size_t row, const Lanes* radiosity) {
+    const Index* const column = matrix.column.data();
+    const float* const value = matrix.value.data();
+    const std::uint64_t end = matrix.row_begin[row + 1];
+    std::uint64_t e = matrix.row_begin[row];
+    const auto light = [&](std::uint64_t entry) { return value[entry] * radiosity[column[entry]].v; };
+    DoubleVector sum{};
+    for (; e + 4 <= end; e += 4) {
+        const Lanes::Vector run = (light(e) + light(e + 1)) + (light(e + 2) + light(e + 3));
+        sum += __builtin_convertvector(run, DoubleVector);
+    }
+    for (; e < end; ++e) sum += __builtin_convertvector(light(e), DoubleVector);
+    return __builtin_convertvector(sum, Lanes::Vector);
+}
+
+}  // namespace
+
+void gather(const FormFactorMatrix& matrix, std::span<const Lanes> radiosity, std::span<Lanes> irradiance,
+            const Context& context) {
+    constexpr std::size_t chunk = 256;
+    context.for_chunks(matrix.rows(), chunk, [&](std::size_t first, std::size_t last) {
+        for (std::size_t row = first; row < last; ++row)
+            irradiance[row].v = gather_row(matrix, row, radiosity.data());
+    });
+}
+
+void shoot(const FormFactorColumns& columns, std::span<const Index> patches, std::span<const Rgb> shot,
+           std::span<Lanes> irradiance, const Context& context) {
+    constexpr std::size_t patches_between_checks = 1024;
+    Lanes* const receivers = irradiance.data();
+    const Index* const row = columns.row.data();
+    const float* const value = columns.value.data();
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+        if (k % patches_between_checks == 0) context.check_stop();
+        const Index i = patches[k];
+        const Lanes::Vector light = to_lanes(shot[i]).v;
+        const std::uint64_t end = columns.column_begin[i + 1];
+        for (std::uint64_t e = columns.column_begin[i]; e < end; ++e) receivers[row[e]].v += value[e] * light;
+    }
+}
+
+}  // namespace afterglow

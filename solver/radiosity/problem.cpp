@@ -1,0 +1,79 @@
+#include "solver/radiosity/problem.h"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "solver/base/error.h"
+
+namespace afterglow {
+
+namespace {
+
+[[noreturn]] void fail(std::string_view field, const std::string& message) {
+    throw Error(ErrorKind::invalid_input, std::string(field), message);
+}
+
+void check_size(std::size_t size, std::size_t patches, std::string_view field) {
+    if (size != patches)
+        fail(field, "has " + std::to_string(size) + " values for " + std::to_string(patches) + " patches");
+}
+
+/// Light and its sums stay far from the largest float.
+constexpr float largest_value = 1e30F;
+
+void check_values(std::span<const Rgb> values, std::string_view field) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const Rgb& v = values[i];
+        if (!is_finite(v) || v.r < 0 || v.g < 0 || v.b < 0 || max_channel(v) > largest_value)
+            fail(field, "patch " + std::to_string(i) + " must lie in [0, 1e30]");
+    }
+}
+
+}  // namespace
+
+void check(const RadiosityProblem& problem) {
+    const std::size_t patches = problem.patches();
+    check_size(problem.form_factors.rows(), patches, "form factors");
+    check_size(problem.emission.size(), patches, "emission");
+    check_size(problem.reflectance.size(), patches, "reflectance");
+    if (!problem.external_irradiance.empty())
+        check_size(problem.external_irradiance.size(), patches, "external irradiance");
+    for (std::size_t i = 0; i < patches; ++i)
+        if (const float a = problem.area[i]; !(a > 0) || a - a != 0.0F)
+            fail("area", "patch " + std::to_string(i) + " must be finite and above 0");
+    check_values(problem.emission, "emission");
+    check_values(problem.reflectance, "reflectance");
+    check_values(problem.external_irradiance, "external irradiance");
+}
+
+Enclosure enclosure_of(const RadiosityProblem& problem, const Context& context) {
+    struct Part {
+        double gain = 0, area = 0, seen = 0;
+    };
+    constexpr std::size_t chunk = 512;
+    const FormFactorMatrix& matrix = problem.form_factors;
+    std::vector<Part> parts((problem.patches() + chunk - 1) / chunk);
+    context.for_chunks(problem.patches(), chunk, [&](std::size_t first, std::size_t last) {
+        Part part;
+        for (std::size_t i = first; i < last; ++i) {
+            double sum = 0;
+            for (std::uint64_t e = matrix.row_begin[i]; e < matrix.row_begin[i + 1]; ++e)
+                sum += matrix.value[e];
+            part.gain = std::max(part.gain, static_cast<double>(max_channel(problem.reflectance[i])) * sum);
+            part.area += problem.area[i];
+            part.seen += problem.area[i] * sum;
+        }
+        parts[first / chunk] = part;
+    });
+    Part all;
+    for (const Part& part : parts) {
+        all.gain = std::max(all.gain, part.gain);
+        all.area += part.area;
+        all.seen += part.seen;
+    }
+    return {all.gain, all.area > 0 ? all.seen / all.area : 0};
+}
+
+}  // namespace afterglow

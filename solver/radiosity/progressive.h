@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "solver/base/context.h"
+#include "solver/base/math.h"
+#include "solver/formfactor/matrix.h"
+#include "solver/radiosity/certificate.h"
+#include "solver/radiosity/problem.h"
+
+namespace afterglow {
+
+/// Which patches shoot next. Unshot power is |ΔB| A in its largest channel, so that light in a single channel
+/// is never left behind.
+enum class ShootingOrder {
+    threshold_scan,  ///< all within a factor of two of the largest, as one batch in index order
+    largest_first,   ///< the largest alone, found by a scan over all patches: Cohen's order, for comparison
+};
+
+/// How far and how to solve.
+struct ProgressiveConfig {
+    double asked_error = 0.02;  ///< certificate (error_bound) at which the solution is finished, above 0
+    /// Shots after which a call returns. The batch in hand is always completed, and a call makes at least
+    /// one: what is computed never depends on how the shots are divided over calls.
+    std::uint64_t max_shots = std::numeric_limits<std::uint64_t>::max();
+    ShootingOrder order = ShootingOrder::threshold_scan;  ///< see ShootingOrder
+    /// A batch whose columns hold at least this share of all entries is made as a sweep instead: every patch
+    /// shoots, and the rows gather it in parallel. Above 1: only for the final check. See README.md for
+    /// figures.
+    double sweep_share = 0.25;
+};
+
+/// Where the solution stands.
+enum class ProgressiveStatus {
+    running,    ///< more shots would help
+    converged,  ///< the certificate is met
+    exhausted,  ///< only rounding is left, and the certificate asked for is finer than single precision can
+                ///< give
+};
+
+/// A solution on its way. B = E + ρH is what is shown; H and not B is kept, so that ρ = 0 needs no division.
+/// Between steps H = F (B − unshot) + H0. In float, because a sum's many small terms are added up in double
+/// or in short runs before they meet the large value here, and each sweep computes H afresh.
+struct ProgressiveState {
+    std::vector<Rgb> irradiance;  ///< H, W/m², by patch
+    std::vector<Rgb> unshot;      ///< ΔB, W/m², by patch: light of B not yet sent out; may round to below 0
+    Enclosure enclosure;          ///< of the problem
+    std::uint64_t shots = 0;      ///< patches that have shot, over all batches
+    std::uint64_t sweeps = 0;     ///< batches that were made as sweeps
+    ProgressiveStatus status = ProgressiveStatus::running;  ///< see ProgressiveStatus
+    bool polishing = false;    ///< only sweeps from here on: the certificate is near
+    float largest_before = 0;  ///< largest unshot radiosity after the sweep before, while polishing
+};
+
+/// Starts cold: H = H0 and everything emitted or reflected of it is unshot.
+/// Errors: invalid_input naming the field and patch; cannot_converge where the gain is 1 or more, since the
+/// light would grow without bound. Sums all rows once, on the context's threads.
+ProgressiveState make_progressive_state(const RadiosityProblem& problem, const Context& context = Context(1));
+
+/// Shoots until the certificate is met (status converged), nothing but rounding is left (exhausted), or
+/// `config.max_shots` more shots were made. A finished state returns at once. Loop on `status`.
+/// Returns the certificate of E + ρH from the bound ‖r‖∞ = ‖ρ F ΔB‖∞ ≤ g ‖ΔB‖∞, plus rounding. The state is
+/// only called converged after a sweep, when that bound is rigorous; before, the rounding of shot sums (some
+/// 10⁻⁵ of the residual) is left out. `columns` must be columns_of(problem.form_factors), the problem that of
+/// the state. Same bits for any number of threads and any division into calls. Source: Cohen et al. 1988,
+/// section 3. Errors: invalid_input; cancelled leaves a consistent state.
+Certificate step(ProgressiveState& state, const RadiosityProblem& problem, const FormFactorColumns& columns,
+                 const ProgressiveConfig& config, const Context& context);
+
+/// A solution and its promise.
+struct ProgressiveSolution {
+    ProgressiveState state;
+    Certificate certificate;
+};
+
+/// One call: a cold start and steps until finished (or `config.max_shots`). Errors as above.
+ProgressiveSolution solve_progressive(const RadiosityProblem& problem, const FormFactorColumns& columns,
+                                      const ProgressiveConfig& config, const Context& context);
+
+}  // namespace afterglow
