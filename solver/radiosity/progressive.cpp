@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "solver/base/error.h"
@@ -27,7 +26,7 @@ struct Survey {
     double power = 0;       ///< largest |ΔB| A, W
     std::size_t patch = 0;  ///< the first one that has it
     Certificate certificate;
-    bool only_rounding = false;  ///< what is left unshot is no larger than what rounding hides
+    bool only_rounding = false;  ///< what is left unshot is far less than what rounding hides
 };
 
 Survey survey(const ProgressiveState& state, const RadiosityProblem& problem) {
@@ -46,7 +45,7 @@ Survey survey(const ProgressiveState& state, const RadiosityProblem& problem) {
     const double rounding = gather_rounding * static_cast<double>(reflected);
     result.certificate =
         make_certificate(left + rounding, state.enclosure.gain, mean_reflected(problem, state.irradiance));
-    result.only_rounding = left <= rounding;
+    result.only_rounding = 8 * left <= rounding;
     return result;
 }
 
@@ -99,15 +98,24 @@ void sweep(ProgressiveState& state, const RadiosityProblem& problem, const Conte
     ++state.sweeps;
 }
 
+/// Called after each polishing sweep. 1/(1 − g) of them shrink unshot light at least e-fold; where they do
+/// not even halve it, rounding feeds it.
+bool has_stalled(ProgressiveState& state, float unshot) {
+    PolishingRun& run = state.run;
+    if (run.sweeps > 0 && static_cast<double>(run.sweeps) * (1 - state.enclosure.gain) < 1) {
+        ++run.sweeps;
+        return false;
+    }
+    const bool stalled = run.sweeps > 0 && unshot > 0.5F * run.unshot_at_start;
+    run = {1, unshot};
+    return stalled;
+}
+
 /// Makes one batch and says where the solution then stands.
 Survey make_batch(ProgressiveState& state, const RadiosityProblem& problem, const FormFactorColumns& columns,
                   const ProgressiveConfig& config, const Survey& before, const Context& context) {
-    // Near the end only sweeps: they shrink the largest unshot radiosity each time, so an end is certain.
-    if (!state.polishing && (before.certificate.error_bound <= config.asked_error || before.only_rounding)) {
-        state.polishing = true;
-        // The first sweep also corrects the rounding of all shots before, so it need not shrink anything.
-        state.largest_before = std::numeric_limits<float>::infinity();
-    }
+    // Near the end only sweeps: each shrinks the largest unshot radiosity by the gain, so an end is certain.
+    if (before.certificate.error_bound <= config.asked_error || before.only_rounding) state.polishing = true;
     bool swept = state.polishing;
     if (!swept) {
         const std::vector<Index> patches = choose(state, problem, before, config.order);
@@ -120,10 +128,8 @@ Survey make_batch(ProgressiveState& state, const RadiosityProblem& problem, cons
     const Survey after = survey(state, problem);
     if (swept && after.certificate.error_bound <= config.asked_error) {
         state.status = ProgressiveStatus::converged;
-    } else if (state.polishing) {
-        if (after.only_rounding || after.unshot >= state.largest_before)
-            state.status = ProgressiveStatus::exhausted;
-        state.largest_before = after.unshot;
+    } else if (state.polishing && (after.only_rounding || has_stalled(state, after.unshot))) {
+        state.status = ProgressiveStatus::exhausted;
     }
     return after;
 }
@@ -183,7 +189,7 @@ Certificate step(ProgressiveState& state, const RadiosityProblem& problem, const
                  const ProgressiveConfig& config, const Context& context) {
     check_step(state, problem, columns, config);
     Survey now = survey(state, problem);
-    if (now.certificate.residual == 0) state.status = ProgressiveStatus::converged;
+    if (now.unshot == 0 && now.certificate.residual == 0) state.status = ProgressiveStatus::converged;
     const std::uint64_t shots_before = state.shots;
     Reporter reporter(config.asked_error, context);
     reporter.say(now.certificate.error_bound);

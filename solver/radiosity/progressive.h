@@ -40,6 +40,12 @@ enum class ProgressiveStatus {
                 ///< give
 };
 
+/// The latest run of sweeps over which unshot light must shrink.
+struct PolishingRun {
+    std::uint64_t sweeps = 0;   ///< made so far
+    float unshot_at_start = 0;  ///< largest |ΔB| after the first of them, W/m²
+};
+
 /// A solution on its way. B = E + ρH is what is shown; H and not B is kept, so that ρ = 0 needs no division.
 /// Between steps H = F (B − unshot) + H0. In float, because a sum's many small terms are added up in double
 /// or in short runs before they meet the large value here, and each sweep computes H afresh.
@@ -50,8 +56,8 @@ struct ProgressiveState {
     std::uint64_t shots = 0;      ///< patches that have shot, over all batches
     std::uint64_t sweeps = 0;     ///< batches that were made as sweeps
     ProgressiveStatus status = ProgressiveStatus::running;  ///< see ProgressiveStatus
-    bool polishing = false;    ///< only sweeps from here on: the certificate is near
-    float largest_before = 0;  ///< largest unshot radiosity after the sweep before, while polishing
+    bool polishing = false;  ///< only sweeps from here on: the certificate is near
+    PolishingRun run;        ///< while polishing
 };
 
 /// Starts cold: H = H0 and everything emitted or reflected of it is unshot.
