@@ -50,7 +50,7 @@ class Watcher {
         const WatchNews news = apply_event(view_, event, place_);
         reporter_.on_event(event, view_, news);
         if (news.kind == WatchNews::Kind::final_image && links_.on_finished) links_.on_finished(*news.image);
-        return news.kind == WatchNews::Kind::end ? StreamNext::stop : StreamNext::more;
+        return event.name == "end" ? StreamNext::stop : StreamNext::more;
     }
 
     std::string place_;

@@ -74,10 +74,7 @@ WatchNews apply_event(WatchView& view, const ServerEvent& event, const std::stri
     if (event.name == "image") return take_image(view, read_frame_image(data, place));
     if (event.name == "warning") return {Kind::nothing, {}, new_warnings(view, {read_warning(data)})};
     if (event.name == "error") view.error = problem_line(data);
-    if (event.name == "end") {
-        take_state(view, need_string(data, "state", place));
-        return {Kind::end, {}, {}};
-    }
+    if (event.name == "end") return take_state(view, need_string(data, "state", place));
     return {};  // an event of a newer server
 }
 

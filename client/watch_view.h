@@ -30,7 +30,7 @@ struct WatchView {
 
 /// What an event brought that is worth telling.
 struct WatchNews {
-    enum class Kind { nothing, state, progress, image, final_image, end };
+    enum class Kind { nothing, state, progress, image, final_image };
     Kind kind = Kind::nothing;
     std::optional<FrameImage> image;    ///< of an image
     std::vector<std::string> warnings;  ///< one line each; only those not told before
