@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "solver/formfactor/rows.h"
+#include "solver/scene/world.h"
+
+namespace afterglow {
+
+/// Irradiance of all patches, W/m², from what has no patches: the uniform background (by each patch's share
+/// of sky) and the lights without a surface at `time_s`, from several points of each patch with shadow rays
+/// against everything the caster has placed. Adds the number of rays to `rays_traced`. Errors: cancelled.
+std::vector<Rgb> outside_irradiance(const World& world, double time_s, const PatchMesh& mesh,
+                                    const SightLines& lines, const RayCaster& placed,
+                                    const FormFactors& factors, std::uint64_t& rays_traced,
+                                    const Context& context);
+
+/// Irradiance that a light without surface gives a point if nothing stands between, and the way to it.
+struct LightAtPoint {
+    Rgb irradiance{0};     ///< W/m², on a surface with the given normal
+    Vec3 direction{0};     ///< unit, towards the light
+    float distance_m = 0;  ///< infinite for directional lights
+};
+LightAtPoint light_at(const Light& light, const Pose& pose, const Vec3& point, const Vec3& normal);
+
+}  // namespace afterglow

@@ -1,0 +1,180 @@
+#include "solver/formfactor/rows.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace afterglow {
+
+namespace {
+
+constexpr std::size_t blocks_per_chunk = 16;
+
+/// A centre in one body's frame, seen from another's.
+Vec3 moved(const RayCaster& placed, Index from, Index to, const Vec3& point) {
+    if (from == to) return point;
+    const Pose& target = placed.pose(to);
+    return glm::conjugate(target.rotation) * (placed.pose(from).point(point) - target.translation);
+}
+
+/// Rows of some consecutive blocks, before they are joined.
+struct Part {
+    std::vector<Index> row_size;
+    std::vector<Index> column;
+    std::vector<float> value;
+};
+
+/// Collects one row, merging equal columns by a table of where each was last put.
+class RowBuilder {
+  public:
+    explicit RowBuilder(std::size_t columns) : place_(columns, 0) {}
+
+    void begin(Part& part) {
+        part_ = &part;
+        first_ = part.column.size();
+    }
+    void add(Index column, float value) {
+        std::size_t& place = place_[column];
+        // Stale places lie before this row or hold another column.
+        if (place >= first_ && place < part_->column.size() && part_->column[place] == column) {
+            part_->value[place] += value;
+            return;
+        }
+        place = part_->column.size();
+        part_->column.push_back(column);
+        part_->value.push_back(value);
+    }
+    void end() { part_->row_size.push_back(static_cast<Index>(part_->column.size() - first_)); }
+
+  private:
+    std::vector<std::size_t> place_;
+    Part* part_ = nullptr;
+    std::size_t first_ = 0;
+};
+
+class RowCompiler {
+  public:
+    RowCompiler(const PatchMesh& mesh, const SightLines& lines, const LightLines& light_lines,
+                const Lamps& lamps, const RayCaster& placed, const SeenLines& seen, FormFactors& out)
+        : mesh_(mesh),
+          lines_(lines),
+          light_lines_(light_lines),
+          lamps_(lamps),
+          placed_(placed),
+          seen_(seen),
+          out_(out) {}
+
+    void compile(std::size_t block_index, RowBuilder& row, Part& part) const {
+        const PatchBlock& block = lines_.blocks()[block_index];
+        for (Index lane = 0; lane < block.count; ++lane) {
+            row.begin(part);
+            compile_row(block_index, block, lane, row);
+            row.end();
+        }
+    }
+
+  private:
+    void compile_row(std::size_t block_index, const PatchBlock& block, Index lane, RowBuilder& row) const {
+        const Index patch = block.first + lane;
+        const std::vector<char> near = lamps_near(patch);
+        const auto by_light_lines = [&](Index target) {
+            const Index lamp = lamps_.lamp_of_patch[target];
+            return lamp != no_index && near[lamp] == 0;
+        };
+
+        Index buried = 0, on_lamps = 0, outside = 0;
+        for (Index d = 0; d < seen_.directions; ++d) {
+            const Index target = seen_.visible[lines_.line(block, d, lane)];
+            if (target == sees_nothing)
+                ++outside;
+            else if (target == sees_inside)
+                ++buried;
+            else if (by_light_lines(target))
+                ++on_lamps;
+        }
+        const Index valid = seen_.directions - buried;
+        out_.valid_share[patch] = static_cast<float>(valid) / static_cast<float>(seen_.directions);
+        if (valid == 0) return;
+
+        float from_lamps = 0;
+        for (Index k = 0; k < light_lines_.lines_per_patch(); ++k) {
+            // Buried origins gave zeros; the others stand for the whole patch.
+            const float contribution =
+                seen_.light_contribution[light_lines_.line(block, k, lane)] / out_.valid_share[patch];
+            const Index target = light_lines_.lamp_patch(block_index, k);
+            if (contribution <= 0 || !by_light_lines(target)) continue;
+            from_lamps += contribution;
+            row.add(target, contribution);
+        }
+        const Index others = valid - on_lamps;
+        if (others == 0) return;
+        const float weight = std::max(0.0F, 1 - from_lamps) / static_cast<float>(others);
+        out_.sky[patch] = weight * static_cast<float>(outside);
+        if (weight <= 0) return;
+        for (Index d = 0; d < seen_.directions; ++d) {
+            const Index target = seen_.visible[lines_.line(block, d, lane)];
+            if (target != sees_nothing && target != sees_inside && !by_light_lines(target))
+                row.add(target, weight);
+        }
+    }
+
+    [[nodiscard]] std::vector<char> lamps_near(Index patch) const {
+        std::vector<char> near(lamps_.list.size(), 0);
+        for (std::size_t l = 0; l < near.size(); ++l) {
+            const Lamp& lamp = lamps_.list[l];
+            near[l] = static_cast<char>(
+                is_near(lamp, moved(placed_, mesh_.body[patch], lamp.body, mesh_.centre[patch]), {}));
+        }
+        return near;
+    }
+
+    const PatchMesh& mesh_;
+    const SightLines& lines_;
+    const LightLines& light_lines_;
+    const Lamps& lamps_;
+    const RayCaster& placed_;
+    const SeenLines& seen_;
+    FormFactors& out_;
+};
+
+/// Joins the parts, in order, into one matrix.
+FormFactorMatrix join(const std::vector<Part>& parts, std::size_t rows, const Context& context) {
+    FormFactorMatrix matrix;
+    matrix.row_begin.reserve(rows + 1);
+    std::vector<std::size_t> first_entry{0};
+    for (const Part& part : parts) {
+        for (const Index size : part.row_size) matrix.row_begin.push_back(matrix.row_begin.back() + size);
+        first_entry.push_back(matrix.row_begin.back());
+    }
+    matrix.column.resize(first_entry.back());
+    matrix.value.resize(first_entry.back());
+    context.for_chunks(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            std::copy(parts[p].column.begin(), parts[p].column.end(),
+                      matrix.column.begin() + static_cast<std::ptrdiff_t>(first_entry[p]));
+            std::copy(parts[p].value.begin(), parts[p].value.end(),
+                      matrix.value.begin() + static_cast<std::ptrdiff_t>(first_entry[p]));
+        }
+    });
+    return matrix;
+}
+
+}  // namespace
+
+FormFactors compile_rows(const PatchMesh& mesh, const SightLines& lines, const LightLines& light_lines,
+                         const Lamps& lamps, const RayCaster& placed, const SeenLines& seen,
+                         const Context& context) {
+    FormFactors out;
+    out.sky.assign(mesh.size(), 0);
+    out.valid_share.assign(mesh.size(), 0);
+    const RowCompiler compiler(mesh, lines, light_lines, lamps, placed, seen, out);
+    const std::size_t blocks = lines.blocks().size();
+    std::vector<Part> parts((blocks + blocks_per_chunk - 1) / blocks_per_chunk);
+    context.for_chunks(blocks, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
+        RowBuilder row(mesh.size());
+        for (std::size_t b = begin; b < end; ++b) compiler.compile(b, row, parts[begin / blocks_per_chunk]);
+    });
+    out.matrix = join(parts, mesh.size(), context);
+    return out;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "solver/base/context.h"
+#include "solver/base/pixels.h"
+#include "solver/image/camera.h"
+#include "solver/mesh/interpolation.h"
+
+namespace afterglow {
+
+/// What a picture is made from, at one time.
+struct LitWorld {
+    const World* world = nullptr;
+    const PatchMesh* mesh = nullptr;
+    const Interpolation* interpolation = nullptr;
+    const RayCaster* caster = nullptr;    ///< with the bodies where they stand
+    std::span<const Material> materials;  ///< as they are at this time
+    std::span<const Rgb> irradiance;      ///< by patch, W/m²
+    std::span<const float> confidence;    ///< by patch: share of its lines that were of use
+};
+
+struct PictureConfig {
+    int samples_per_pixel = 4;  ///< camera rays a pixel, box-filtered
+    std::uint64_t seed = 1;     ///< of the places of the samples within pixels
+};
+
+/// Radiance seen by a camera: what a surface emits, and its reflectance at the point (texture included) times
+/// the interpolated irradiance over π. Adds the number of rays to `rays_traced`. Same bits for any number of
+/// threads. Errors: cancelled.
+Picture render_picture(const CameraView& view, const LitWorld& lit, const PictureConfig& config,
+                       std::uint64_t& rays_traced, const Context& context);
+
+}  // namespace afterglow

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "solver/mesh/patch_mesh.h"
+
+namespace afterglow {
+
+/// The patches whose values make up the value at a point, and their weights (sum 1, all ≥ 0).
+struct Stencil {
+    static constexpr std::size_t most = 12;
+    std::array<Index, most> patch{};
+    std::array<float, most> weight{};
+    std::size_t count = 0;
+
+    void add(Index p, float w) {
+        if (w <= 0 || count == most) return;
+        patch[count] = p;
+        weight[count++] = w;
+    }
+};
+
+/// Smooth values from patch values: bilinear between cell centres on flat surfaces, weighted by distance
+/// among a cluster and its neighbours on curved ones. Never crosses the border of a surface or its two sides.
+/// Thread-safety: const after construction; the mesh must outlive it.
+class Interpolation {
+  public:
+    Interpolation(const World& world, const PatchMesh& mesh);
+
+    /// The stencil at a point of a triangle's side, position in the body's frame; empty on sides without
+    /// patches.
+    [[nodiscard]] Stencil at(Index body, Index triangle, Side side, const Vec3& position) const;
+
+    /// Weighted mean of values, patches counting by their `confidence` too (0: knows nothing).
+    [[nodiscard]] static Rgb value(const Stencil& stencil, std::span<const Rgb> values,
+                                   std::span<const float> confidence);
+
+  private:
+    [[nodiscard]] Stencil on_grid(const SurfaceGrid& grid, std::size_t first_cell,
+                                  const Vec3& position) const;
+    [[nodiscard]] Stencil on_clusters(Index patch, const Vec3& position) const;
+
+    const PatchMesh* mesh_;
+    std::vector<std::size_t> first_neighbour_;  // by patch; empty ranges on flat surfaces
+    std::vector<Index> neighbours_;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "solver/mesh/surface.h"
+
+namespace afterglow {
+
+/// A surface has two sides and both reflect.
+enum class Side : std::uint8_t { front = 0, back = 1 };
+
+/// Patches that stand together in memory: 16 neighbours share the directions of their sight lines.
+inline constexpr Index block_size = 16;
+
+/// Part of a patch that is not a whole rectangle: a triangle with its corner and two edges.
+struct Fragment {
+    Vec3 corner, edge_a, edge_b;
+    Vec3 normal;             ///< unit, on the patch's side
+    float cumulative_share;  ///< of the patch's area up to and including this fragment, the last is 1
+};
+
+/// A point of a patch and the normal there, in the body's frame.
+struct PatchPoint {
+    Vec3 position, normal;
+};
+
+/// How one surface is divided. Flat: a grid of cells in its plane. Curved: clusters of triangles.
+struct SurfaceGrid {
+    Vec3 origin{0};  ///< corner of cell (0, 0), body frame
+    Vec3 per_metre_u{
+        0};  ///< cells along u in one metre, as a vector: dot with an offset gives the cell coordinate
+    Vec3 per_metre_v{0};
+    int cells_u = 0, cells_v = 0;             ///< 0 for curved surfaces
+    std::array<std::size_t, 2> first_cell{};  ///< by side, into PatchMesh::patch_of_cell
+};
+
+/// The patches of a world, as arrays over patches. Static patches come first, then those of each actor in
+/// turn; neighbours stand together, so that block k of a body is its patches 16k … 16k+15. All geometry is in
+/// the body's frame.
+struct PatchMesh {
+    std::vector<float> area_m2;
+    std::vector<Vec3> centre;
+    std::vector<Vec3> normal;  ///< unit, of the patch's own side; the mean where curved
+    std::vector<Index> body;
+    std::vector<Index> surface;
+    std::vector<Side> side;
+    std::vector<Rgb> texture_mean;            ///< mean texture colour over the patch, 1 without a texture
+    std::vector<Vec3> origin;                 ///< of a whole rectangle
+    std::vector<Vec3> edge_u, edge_v;         ///< of a whole rectangle
+    std::vector<std::size_t> first_fragment;  ///< size patches + 1; whole rectangles have none
+    std::vector<Fragment> fragments;
+
+    Surfaces surfaces;
+    std::vector<SurfaceGrid> grids;    ///< by surface
+    std::vector<Index> patch_of_cell;  ///< by cell, no_index where nothing is
+    std::vector<std::array<std::vector<Index>, 2>>
+        patch_of_triangle;                   ///< [body][side][triangle]; curved surfaces only
+    std::vector<Index> first_patch_of_body;  ///< size bodies + 1
+
+    [[nodiscard]] Index size() const { return static_cast<Index>(area_m2.size()); }
+    [[nodiscard]] Index static_size() const { return first_patch_of_body[1]; }
+    [[nodiscard]] Index material(Index patch) const { return surfaces.list[surface[patch]].material; }
+
+    /// The patch at a point of a triangle's side, or no_index on sides without patches. `position` in the
+    /// body's frame.
+    [[nodiscard]] Index patch_at(Index body_index, Index triangle, Side on, const Vec3& position) const;
+
+    /// The point that (s, t) in [0,1)² stands for; uniform over the area.
+    [[nodiscard]] PatchPoint point_on(Index patch, float s, float t) const;
+};
+
+/// Which sides of which surfaces get patches.
+using SideMask = std::vector<std::array<bool, 2>>;  ///< [surface][side]
+
+struct MeshConfig {
+    float patch_size_m = 0.2F;  ///< target edge; large faces are divided into cells no longer than this
+};
+
+/// Divides the wanted sides of all surfaces into patches. Deterministic.
+/// Errors: too_large past 4 million patches, naming the patch size. Thread-safety: pure.
+PatchMesh make_patches(const World& world, Surfaces surfaces, const SideMask& wanted,
+                       const MeshConfig& config);
+
+}  // namespace afterglow

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "solver/base/hash.h"
+#include "solver/formfactor/rows.h"
+#include "solver/image/picture.h"
+#include "solver/mesh/interpolation.h"
+#include "solver/sequence/sequence.h"
+#include "solver/visibility/strategy.h"
+
+namespace afterglow {
+
+/// What a sequence keeps from frame to frame. Parts point at each other, so they stay where they are: behind
+/// one pointer.
+struct SequenceState::Parts {
+    World world;
+    SequenceConfig config;
+    PlacedCamera camera;
+    RayCaster caster;
+    PatchMesh mesh;
+    std::optional<Interpolation> interpolation;
+    Lamps lamps;
+    std::optional<SightLines> sight;
+    std::optional<LightLines> light;
+    StaticLines background;
+    Hash128 background_key;
+    std::unique_ptr<VisibilityStrategy> strategy;
+    VisibleLines visible;
+    std::vector<Index> visible_before;  ///< sight lines of the frame before, empty at first
+    std::optional<float> exposure_ev;   ///< set once, for all frames
+    SequenceStatistics statistics;
+    Warnings warnings;
+
+    Parts(World world_in, const SequenceConfig& config_in)
+        : world(std::move(world_in)), config(config_in), caster(world) {}
+
+    [[nodiscard]] double frames_per_second() const {
+        return config.frames_per_second > 0 ? config.frames_per_second : world.frames_per_second;
+    }
+    [[nodiscard]] double time_of(int frame) const { return frame / frames_per_second(); }
+    [[nodiscard]] LineScene lines() const { return {mesh, *sight, *light, caster, background}; }
+};
+
+}  // namespace afterglow

@@ -1,0 +1,125 @@
+#include "solver/sequence/prepare.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/formfactor/static_cache.h"
+#include "solver/sequence/stopwatch.h"
+#include "solver/visibility/reach.h"
+
+namespace afterglow {
+
+namespace {
+
+constexpr float patches_wanted = 8000;  // where no patch size is given
+
+void require(bool holds, const char* setting, const char* rule) {
+    if (!holds) throw Error(ErrorKind::invalid_input, setting, rule);
+}
+
+Index rounded_up(int rays) {
+    return static_cast<Index>((rays + 15) / 16 * 16);
+}
+
+float area_of_all(const World& world) {
+    float area = 0;
+    for (const Body& body : world.bodies)
+        for (Index t = 0; t < body.triangles.size(); ++t)
+            area += 0.5F * glm::length(doubled_area_normal(body, t));
+    return area;
+}
+
+float reached_area(const Surfaces& surfaces, const SideMask& reached) {
+    float area = 0;
+    for (std::size_t s = 0; s < surfaces.list.size(); ++s)
+        area += surfaces.list[s].area_m2 * static_cast<float>(int{reached[s][0]} + int{reached[s][1]});
+    return area;
+}
+
+}  // namespace
+
+void check(const SequenceConfig& config) {
+    require(config.rays_per_patch >= 16 && config.rays_per_patch <= 65536, "rays",
+            "must be from 16 to 65536");
+    require(!config.patch_size_m || (*config.patch_size_m > 0 && std::isfinite(*config.patch_size_m)),
+            "patch_size", "must be above 0 metres");
+    require(config.asked_error > 0 && config.asked_error < 1, "error", "must lie between 0 and 1");
+    require(config.width >= 1 && config.width <= 16384 && config.height >= 1 && config.height <= 16384,
+            "size", "must be from 1 to 16384 pixels each way");
+    require(config.frames_per_second >= 0 && std::isfinite(config.frames_per_second), "fps",
+            "must be above 0");
+    require(!config.exposure_ev || std::abs(*config.exposure_ev) <= 64, "exposure",
+            "must be from -64 to 64 stops");
+}
+
+PlacedCamera find_camera(const World& world, const std::string& name) {
+    if (name.empty()) return world.cameras.front();
+    std::string names;
+    for (const PlacedCamera& camera : world.cameras) {
+        if (camera.camera.name == name) return camera;
+        names += (names.empty() ? "" : ", ") + camera.camera.name;
+    }
+    throw Error(ErrorKind::not_found, "camera", "there is no camera \"" + name + "\"; there are: " + names);
+}
+
+void mesh_world(SequenceState::Parts& parts, const Context& context) {
+    const World& world = parts.world;
+    const auto size_for = [](float area) { return std::sqrt(area / patches_wanted); };
+    const auto asked = parts.config.patch_size_m;
+    const float first_guess = asked ? static_cast<float>(*asked) : size_for(area_of_all(world));
+    Surfaces surfaces = find_surfaces(world, {.facet_size_m = first_guess});
+    ReachConfig reach;
+    reach.spacing_m = first_guess;
+    reach.seed = parts.config.seed;
+    const SideMask reached = reachable_sides(world, surfaces, parts.caster, reach, context);
+    MeshConfig mesh;
+    mesh.patch_size_m = asked ? first_guess : size_for(reached_area(surfaces, reached));
+    parts.mesh = make_patches(world, std::move(surfaces), reached, mesh);
+    if (parts.mesh.size() == 0)
+        throw Error(ErrorKind::invalid_input, world.name, "no surface can be reached by light or seen");
+
+    parts.interpolation.emplace(world, parts.mesh);
+    parts.lamps = find_lamps(world, parts.mesh);
+    const Index rays = rounded_up(parts.config.rays_per_patch);
+    parts.sight.emplace(parts.mesh, world, rays, parts.config.seed);
+    const Index light_lines = std::clamp(rays / 4, Index{16}, Index{256});
+    parts.light.emplace(parts.mesh, *parts.sight, parts.lamps, light_lines, mixed(parts.config.seed));
+    parts.visible = make_visible_lines(parts.mesh, *parts.sight, *parts.light);
+    parts.statistics.patches = parts.mesh.size();
+    parts.statistics.actor_patches = parts.mesh.size() - parts.mesh.static_size();
+    parts.statistics.sight_lines = parts.visible.patch.size() + parts.visible.light_contribution.size();
+    parts.statistics.rays_per_patch = static_cast<int>(rays);
+}
+
+std::uint64_t advance_static_pass(SequenceState::Parts& parts, Index directions, const Context& context) {
+    const Stopwatch watch;
+    const auto& folder = parts.config.cache_folder;
+    if (parts.background.background.patch.empty()) {
+        parts.background = make_static_lines(parts.mesh, *parts.sight, *parts.light);
+        parts.background_key = static_key(parts.world, parts.mesh, *parts.sight, parts.lamps,
+                                          parts.light->lines_per_patch(), parts.config.seed);
+        if (!folder.empty()) {
+            auto kept = load_static_lines(folder, parts.background_key, parts.mesh,
+                                          parts.sight->lines_per_patch(), parts.light->lines_per_patch());
+            if (kept) parts.background = std::move(*kept);
+            parts.statistics.static_from_cache = kept.has_value();
+        }
+    }
+    std::uint64_t rays = 0;
+    if (parts.background.directions < directions) {
+        rays = extend_static_lines(parts.background, parts.mesh, *parts.sight, *parts.light, parts.caster,
+                                   directions, context);
+        if (!folder.empty() && directions == parts.sight->lines_per_patch()) {
+            try {
+                save_static_lines(folder, parts.background_key, parts.background);
+            } catch (const Error& error) {
+                parts.warnings.push_back(
+                    {error.place(), "the static pass could not be kept for later: " + error.message()});
+            }
+        }
+    }
+    parts.statistics.static_pass += watch.elapsed();
+    return rays;
+}
+
+}  // namespace afterglow

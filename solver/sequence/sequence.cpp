@@ -1,0 +1,163 @@
+#include "solver/sequence/sequence.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "solver/image/tone_map.h"
+#include "solver/sequence/frame_refinement.h"
+#include "solver/sequence/prepare.h"
+#include "solver/sequence/stopwatch.h"
+
+namespace afterglow {
+
+namespace {
+
+// A first look: enough lines to tell light from dark.
+constexpr Index first_look = 16;
+constexpr Index second_look = 64;
+// Certificate at which a preliminary picture is good enough to be shown.
+constexpr double coarse_error = 0.5;
+// Side of the picture that the automatic exposure is taken from.
+constexpr int exposure_picture_height = 90;
+
+std::unique_ptr<VisibilityStrategy> make_strategy(Visibility visibility) {
+    switch (visibility) {
+        case Visibility::retrace:
+            return make_retrace();
+        case Visibility::back_buffer:
+            return make_back_buffer();
+    }
+    throw Error(ErrorKind::invalid_input, "visibility", "is not one of the strategies there are");
+}
+
+/// Fixed over a job, so that frames do not pump, and taken from time 0 whichever frame comes first, so that
+/// parts of an animation computed apart fit together.
+float find_exposure(SequenceState::Parts& parts, const Context& context) {
+    if (parts.config.exposure_ev) return static_cast<float>(*parts.config.exposure_ev);
+    FrameRefinement frame(parts, 0);
+    frame.look(first_look, *parts.strategy, context);
+    frame.solve(coarse_error, context);
+    const int height = std::min(parts.config.height, exposure_picture_height);
+    const int width = std::max(1, height * parts.config.width / parts.config.height);
+    return automatic_exposure_ev(frame.preliminary_picture(width, height, context));
+}
+
+/// Hands a frame's pictures to the caller, numbered.
+class Publisher {
+  public:
+    Publisher(const SequenceState::Parts& parts, int frame, const RevisionSink& sink)
+        : parts_(parts), frame_(frame), sink_(sink) {}
+
+    [[nodiscard]] bool wants_preliminary() const {
+        return sink_ && parts_.config.revisions == Revisions::all;
+    }
+
+    void publish(Picture radiance, double residual, bool final) {
+        if (!sink_) return;
+        Revision revision;
+        revision.frame = frame_;
+        revision.revision = ++count_;
+        revision.final = final;
+        revision.residual = residual;
+        revision.srgb = to_srgb(radiance, *parts_.exposure_ev);
+        revision.radiance = std::move(radiance);
+        sink_(revision);
+    }
+
+  private:
+    const SequenceState::Parts& parts_;
+    int frame_;
+    const RevisionSink& sink_;
+    int count_ = 0;
+};
+
+std::uint64_t count_changes(const std::vector<Index>& now, const std::vector<Index>& before) {
+    if (before.empty()) return 0;
+    std::uint64_t changes = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) changes += now[i] != before[i] ? 1U : 0U;
+    return changes;
+}
+
+}  // namespace
+
+SequenceState::SequenceState(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+SequenceState::SequenceState(SequenceState&&) noexcept = default;
+SequenceState& SequenceState::operator=(SequenceState&&) noexcept = default;
+SequenceState::~SequenceState() = default;
+const SequenceStatistics& SequenceState::statistics() const {
+    return parts_->statistics;
+}
+const Warnings& SequenceState::warnings() const {
+    return parts_->warnings;
+}
+
+SequenceState make_state(World world, const SequenceConfig& config, const Context& context) {
+    const Stopwatch watch;
+    check(config);
+    auto parts = std::make_unique<SequenceState::Parts>(std::move(world), config);
+    parts->camera = find_camera(parts->world, config.camera);
+    parts->strategy = make_strategy(config.visibility);
+    mesh_world(*parts, context);
+    parts->statistics.setup = watch.elapsed();
+    return SequenceState(std::move(parts));
+}
+
+FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink& on_revision,
+                     const Context& context) {
+    SequenceState::Parts& parts = state.parts();
+    if (frame_number < 0) throw Error(ErrorKind::invalid_input, "frame", "must be 0 or more");
+    const Stopwatch watch;
+    const Milliseconds static_before = parts.statistics.static_pass;
+    if (!parts.exposure_ev) parts.exposure_ev = find_exposure(parts, context);
+
+    FrameRefinement frame(parts, parts.time_of(frame_number));
+    Publisher publisher(parts, frame_number, on_revision);
+    const Index all = parts.sight->lines_per_patch();
+    if (publisher.wants_preliminary()) {
+        const bool first = parts.visible_before.empty();
+        for (const Index directions : {first_look, second_look, all}) {
+            if (directions > all || (directions < all && !first)) continue;
+            frame.look(directions, *parts.strategy, context);
+            frame.solve(coarse_error, context);
+            publisher.publish(frame.preliminary_picture(parts.config.width, parts.config.height, context),
+                              frame.certificate().residual, false);
+        }
+    }
+    frame.look(all, *parts.strategy, context);
+    frame.solve(parts.config.asked_error, context);
+    Picture picture = frame.final_picture(context);
+    publisher.publish(std::move(picture), frame.certificate().residual, true);
+
+    FrameStatistics statistics = frame.statistics();
+    statistics.frame = frame_number;
+    statistics.visibility_changes = count_changes(parts.visible.patch, parts.visible_before);
+    parts.visible_before = parts.visible.patch;
+    statistics.total = watch.elapsed() - (parts.statistics.static_pass - static_before);
+    context.report(1, "frame finished");
+    return statistics;
+}
+
+std::vector<FrameStatistics> render_sequence(World world, const SequenceConfig& config, int first_frame,
+                                             int last_frame, const RevisionSink& on_revision,
+                                             const Context& context) {
+    if (first_frame < 0 || last_frame < first_frame)
+        throw Error(ErrorKind::invalid_input, "frames", "must be a range A-B with 0 <= A <= B");
+    SequenceState state = make_state(std::move(world), config, context.part(0, 0.05));
+    std::vector<FrameStatistics> frames;
+    const double count = last_frame - first_frame + 1.0;
+    for (int f = first_frame; f <= last_frame; ++f) {
+        const double done = 0.05 + 0.95 * (f - first_frame) / count;
+        frames.push_back(step(state, f, on_revision, context.part(done, done + 0.95 / count)));
+    }
+    return frames;
+}
+
+int last_frame_of(const World& world, const SequenceConfig& config) {
+    const double rate = config.frames_per_second > 0 ? config.frames_per_second : world.frames_per_second;
+    // A key written at frame n stands at n/fps rounded to single precision.
+    return static_cast<int>(std::floor(world.duration_s * rate + 1e-3));
+}
+
+}  // namespace afterglow

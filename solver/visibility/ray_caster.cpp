@@ -1,0 +1,245 @@
+#include "solver/visibility/ray_caster.h"
+
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <embree3/rtcore.h>
+
+#include "solver/base/error.h"
+
+namespace afterglow {
+
+namespace {
+
+/// Releases an Embree handle when its owner goes.
+template <class Handle, void (*Release)(Handle)>
+class Owned {
+  public:
+    Owned() = default;
+    explicit Owned(Handle handle) : handle_(handle) {}
+    Owned(Owned&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
+    Owned& operator=(Owned&& other) noexcept {
+        std::swap(handle_, other.handle_);
+        return *this;
+    }
+    ~Owned() {
+        if (handle_ != nullptr) Release(handle_);
+    }
+    operator Handle() const { return handle_; }  // NOLINT: stands in for the handle everywhere
+
+  private:
+    Handle handle_ = nullptr;
+};
+using Device = Owned<RTCDevice, rtcReleaseDevice>;
+using SceneHandle = Owned<RTCScene, rtcReleaseScene>;
+using Geometry = Owned<RTCGeometry, rtcReleaseGeometry>;
+
+void check(RTCDevice device) {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_NONE) return;
+    throw Error(error == RTC_ERROR_OUT_OF_MEMORY ? ErrorKind::too_large : ErrorKind::io, "",
+                "the ray tracer failed with error " + std::to_string(error));
+}
+
+/// An acceleration structure over one body, in the body's frame.
+SceneHandle build_body(RTCDevice device, const Body& body) {
+    SceneHandle scene(rtcNewScene(device));
+    // Robust: rays must not slip between triangles that share an edge, or light leaks through walls.
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+    if (!body.triangles.empty()) {
+        Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+        auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
+            geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), body.positions.size()));
+        auto* indices = static_cast<Index*>(rtcSetNewGeometryBuffer(
+            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(Index), body.triangles.size()));
+        check(device);
+        std::copy(body.positions.begin(), body.positions.end(), vertices);
+        for (const Triangle& triangle : body.triangles)
+            indices = std::copy(triangle.vertices.begin(), triangle.vertices.end(), indices);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene, geometry);
+    }
+    rtcCommitScene(scene);
+    check(device);
+    return scene;
+}
+
+void to_embree(const RayPacket& in, RTCRay16& out, std::array<int, 16>& valid) {
+    std::memcpy(out.org_x, in.origin_x.data(), sizeof(out.org_x));
+    std::memcpy(out.org_y, in.origin_y.data(), sizeof(out.org_y));
+    std::memcpy(out.org_z, in.origin_z.data(), sizeof(out.org_z));
+    std::memcpy(out.dir_x, in.direction_x.data(), sizeof(out.dir_x));
+    std::memcpy(out.dir_y, in.direction_y.data(), sizeof(out.dir_y));
+    std::memcpy(out.dir_z, in.direction_z.data(), sizeof(out.dir_z));
+    std::memcpy(out.tfar, in.far.data(), sizeof(out.tfar));
+    for (std::size_t k = 0; k < 16; ++k) {
+        valid[k] = k < in.count ? -1 : 0;
+        out.tnear[k] = 0;
+        out.time[k] = 0;
+        out.mask[k] = ~0U;
+        out.flags[k] = 0;
+    }
+}
+
+RTCRay to_embree(const Ray& ray) {
+    RTCRay out{};
+    out.org_x = ray.origin.x;
+    out.org_y = ray.origin.y;
+    out.org_z = ray.origin.z;
+    out.dir_x = ray.direction.x;
+    out.dir_y = ray.direction.y;
+    out.dir_z = ray.direction.z;
+    out.tfar = ray.far;
+    out.mask = ~0U;
+    return out;
+}
+
+RTCIntersectContext make_context(RTCIntersectContextFlags flags) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = flags;
+    return context;
+}
+
+}  // namespace
+
+struct RayCaster::Scenes {
+    Device device;
+    std::vector<SceneHandle> bodies;  // furniture first
+    std::vector<Geometry> instances;  // one an actor
+    SceneHandle actors;               // of the instances
+    std::vector<Pose> poses;
+
+    /// One lane of what Embree reports, and the ray's direction.
+    struct Found {
+        unsigned geometry, instance, triangle;
+        float distance, u, v;
+        Vec3 normal, direction;
+    };
+
+    [[nodiscard]] Hit found(const Found& lane) const {
+        Hit out;
+        if (lane.geometry == RTC_INVALID_GEOMETRY_ID) return out;
+        // Only actors are instanced, in order after the furniture.
+        out.body = lane.instance == RTC_INVALID_GEOMETRY_ID ? furniture : lane.instance + 1;
+        out.triangle = lane.triangle;
+        out.distance = lane.distance;
+        out.u = lane.u;
+        out.v = lane.v;
+        // The normal comes in the body's frame.
+        const Vec3 direction = out.body == furniture
+                                   ? lane.direction
+                                   : glm::conjugate(poses[out.body].rotation) * lane.direction;
+        out.side = glm::dot(direction, lane.normal) < 0 ? Side::front : Side::back;
+        return out;
+    }
+
+    template <class Trace>
+    void for_scenes(Scope scope, Trace trace) const {
+        if (scope != Scope::actors) trace(static_cast<RTCScene>(bodies[furniture]));
+        if (scope != Scope::static_geometry && !instances.empty()) trace(static_cast<RTCScene>(actors));
+    }
+};
+
+RayCaster::RayCaster(const World& world) : scenes_(std::make_unique<Scenes>()) {
+    scenes_->device = Device(rtcNewDevice(nullptr));
+    if (static_cast<RTCDevice>(scenes_->device) == nullptr) check(nullptr);
+    for (const Body& body : world.bodies) scenes_->bodies.push_back(build_body(scenes_->device, body));
+    scenes_->actors = SceneHandle(rtcNewScene(scenes_->device));
+    rtcSetSceneFlags(scenes_->actors,
+                     static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC));
+    for (std::size_t b = 1; b < world.bodies.size(); ++b) {
+        Geometry instance(rtcNewGeometry(scenes_->device, RTC_GEOMETRY_TYPE_INSTANCE));
+        rtcSetGeometryInstancedScene(instance, scenes_->bodies[b]);
+        rtcAttachGeometryByID(scenes_->actors, instance, static_cast<unsigned>(b - 1));
+        scenes_->instances.push_back(std::move(instance));
+    }
+    set_poses(poses_at(world, 0));
+}
+
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+RayCaster::~RayCaster() = default;
+
+void RayCaster::set_poses(std::span<const Pose> poses) {
+    scenes_->poses.assign(poses.begin(), poses.end());
+    for (std::size_t k = 0; k < scenes_->instances.size(); ++k) {
+        const Mat4 matrix = poses[k + 1].matrix();
+        rtcSetGeometryTransform(scenes_->instances[k], 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrix[0][0]);
+        rtcCommitGeometry(scenes_->instances[k]);
+    }
+    rtcCommitScene(scenes_->actors);
+    check(scenes_->device);
+}
+
+const Pose& RayCaster::pose(Index body) const {
+    return scenes_->poses[body];
+}
+
+Hit RayCaster::nearest(const Ray& ray, Scope scope) const {
+    RTCIntersectContext context = make_context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+    RTCRayHit query{to_embree(ray), {}};
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    // The second scene is traced only up to what the first has found, since tfar shrinks with each hit.
+    scenes_->for_scenes(scope, [&](RTCScene scene) { rtcIntersect1(scene, &context, &query); });
+    return scenes_->found({query.hit.geomID, query.hit.instID[0], query.hit.primID, query.ray.tfar,
+                           query.hit.u, query.hit.v, Vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z),
+                           ray.direction});
+}
+
+bool RayCaster::occluded(const Ray& ray, Scope scope) const {
+    RTCIntersectContext context = make_context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+    RTCRay query = to_embree(ray);
+    scenes_->for_scenes(scope, [&](RTCScene scene) {
+        if (query.tfar >= 0) rtcOccluded1(scene, &context, &query);
+    });
+    return query.tfar < 0;
+}
+
+void RayCaster::nearest(const RayPacket& rays, Scope scope, HitPacket& hits) const {
+    RTCIntersectContext context = make_context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+    RTCRayHit16 query;
+    alignas(64) std::array<int, 16> valid;
+    to_embree(rays, query.ray, valid);
+    for (std::size_t k = 0; k < 16; ++k) {
+        query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
+    scenes_->for_scenes(scope,
+                        [&](RTCScene scene) { rtcIntersect16(valid.data(), scene, &context, &query); });
+    for (std::size_t k = 0; k < rays.count; ++k) {
+        const Vec3 normal(query.hit.Ng_x[k], query.hit.Ng_y[k], query.hit.Ng_z[k]);
+        hits[k] = scenes_->found({query.hit.geomID[k], query.hit.instID[0][k], query.hit.primID[k],
+                                  query.ray.tfar[k], query.hit.u[k], query.hit.v[k], normal,
+                                  rays.ray(k).direction});
+    }
+}
+
+std::uint32_t RayCaster::occluded(const RayPacket& rays, Scope scope) const {
+    RTCIntersectContext context = make_context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+    RTCRay16 query;
+    alignas(64) std::array<int, 16> valid;
+    to_embree(rays, query, valid);
+    scenes_->for_scenes(scope, [&](RTCScene scene) {
+        rtcOccluded16(valid.data(), scene, &context, &query);
+        for (unsigned k = 0; k < 16; ++k)
+            if (query.tfar[k] < 0) valid[k] = 0;
+    });
+    std::uint32_t mask = 0;
+    for (unsigned k = 0; k < rays.count; ++k)
+        if (query.tfar[k] < 0) mask |= 1U << k;
+    return mask;
+}
+
+std::vector<Pose> poses_at(const World& world, double time_s) {
+    std::vector<Pose> poses;
+    poses.reserve(world.bodies.size());
+    for (const Body& body : world.bodies) poses.push_back(body.path.at(time_s));
+    return poses;
+}
+
+}  // namespace afterglow

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solver/base/context.h"
+#include "solver/base/sampling.h"
+#include "solver/mesh/patch_mesh.h"
+#include "solver/visibility/ray_caster.h"
+
+namespace afterglow {
+
+/// What a sight line sees where it sees no patch.
+inline constexpr Index sees_nothing = no_index;  ///< it leaves the scene
+inline constexpr Index sees_inside =
+    no_index - 1;  ///< its origin is buried: it meets a side that light cannot reach
+
+/// Sixteen or fewer neighbouring patches whose sight lines share their directions.
+struct PatchBlock {
+    Index first = 0;
+    Index count = 0;
+    Index body = 0;
+};
+
+/// The sight lines of all patches. Rays are never stored: line d of a patch follows from the patch's block, d
+/// and the seed. Line (block, d, lane) has the index block.first · D + d · block.count + lane, so that the
+/// lines traced together stand together. Thread-safety: const after construction.
+class SightLines {
+  public:
+    /// `lines_per_patch` D ≥ 1. The mesh and world are read at construction and by `rays`; the mesh must
+    /// outlive this.
+    SightLines(const PatchMesh& mesh, const World& world, Index lines_per_patch, std::uint64_t seed);
+
+    [[nodiscard]] Index lines_per_patch() const { return lines_per_patch_; }
+    [[nodiscard]] const std::vector<PatchBlock>& blocks() const { return blocks_; }
+    /// Blocks of the furniture come first: their number.
+    [[nodiscard]] std::size_t static_blocks() const { return static_blocks_; }
+    [[nodiscard]] std::size_t line(const PatchBlock& block, Index direction, Index lane) const {
+        return static_cast<std::size_t>(block.first) * lines_per_patch_ +
+               static_cast<std::size_t>(direction) * block.count + lane;
+    }
+    /// How far an origin is lifted off its surface so that a ray does not meet the surface it starts on.
+    [[nodiscard]] float lift_m() const { return lift_m_; }
+
+    /// The rays of one direction of a block, in world coordinates with the block's body at `pose`; far is
+    /// infinite.
+    void rays(std::size_t block, Index direction, const Pose& pose, RayPacket& out) const;
+
+  private:
+    const PatchMesh* mesh_;
+    Index lines_per_patch_;
+    std::uint64_t seed_;
+    SobolPoints points_;
+    std::vector<PatchBlock> blocks_;
+    std::size_t static_blocks_ = 0;
+    float lift_m_ = 0;
+};
+
+/// What lines see, by line index.
+struct LineTargets {
+    std::vector<Index> patch;     ///< or sees_nothing, sees_inside
+    std::vector<float> distance;  ///< metres; infinite where nothing is met
+};
+
+/// Where traced lines are written, by line index; distances only where there is room for them.
+struct LineSinks {
+    std::span<Index> patch;
+    std::span<float> distance;
+};
+
+/// The patch, or sees_inside / sees_nothing, that a hit stands for.
+Index target_of(const Hit& hit, const Ray& ray, const PatchMesh& mesh, const RayCaster& caster);
+
+/// Part of all lines: blocks [first_block, last_block) and directions [first_direction, last_direction).
+struct LineRange {
+    std::size_t first_block = 0, last_block = 0;
+    Index first_direction = 0, last_direction = 0;
+};
+
+/// Traces lines against the furniture and, with Scope::everything, the actors, and writes what they see.
+/// Returns the number of rays. Errors: cancelled.
+std::uint64_t trace_lines(const SightLines& lines, const PatchMesh& mesh, const RayCaster& caster,
+                          Scope scope, const LineRange& range, const LineSinks& sinks,
+                          const Context& context);
+
+/// Directions [first, last) of every patch.
+struct DirectionRange {
+    Index first = 0, last = 0;
+};
+
+/// Lines of static receivers against the actors only, up to their static background: writes the actor patch
+/// where one is nearer, the background otherwise. Returns the number of rays. Source: Baum et al. 1986.
+/// Errors: cancelled.
+std::uint64_t trace_over_background(const SightLines& lines, const PatchMesh& mesh, const RayCaster& caster,
+                                    const LineTargets& background, const DirectionRange& range,
+                                    std::span<Index> visible, const Context& context);
+
+}  // namespace afterglow

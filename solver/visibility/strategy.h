@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "solver/visibility/static_pass.h"
+
+namespace afterglow {
+
+/// What every line of every patch sees at one time.
+struct VisibleLines {
+    std::vector<Index> patch;               ///< by sight line: patch, sees_nothing or sees_inside
+    std::vector<float> light_contribution;  ///< by light line, 0 where blocked
+};
+VisibleLines make_visible_lines(const PatchMesh& mesh, const SightLines& sight, const LightLines& light);
+
+/// The lines and what they are traced in, the caster's bodies standing where they are at this time.
+struct LineScene {
+    const PatchMesh& mesh;
+    const SightLines& sight;
+    const LightLines& light;
+    const RayCaster& caster;
+    const StaticLines& background;  ///< traced as far as asked for; used by strategies that say they need it
+};
+
+/// How a frame learns what its lines see. All strategies give the same answers; they differ in work.
+/// A strategy may keep what it knows from one frame for the next. One thread at a time.
+class VisibilityStrategy {
+  public:
+    virtual ~VisibilityStrategy() = default;
+    /// Whether LineScene::background must have been traced.
+    [[nodiscard]] virtual bool needs_background() const = 0;
+    /// Brings a range of sight lines up to date, and the light lines with the range that starts at 0. Returns
+    /// the number of rays. Errors: cancelled.
+    virtual std::uint64_t update(const LineScene& scene, const DirectionRange& range, VisibleLines& visible,
+                                 const Context& context) = 0;
+};
+
+/// Static and moving geometry traced anew: the yardstick and the oracle.
+std::unique_ptr<VisibilityStrategy> make_retrace();
+
+/// Static receivers keep their backgrounds and are traced against the actors only (Baum et al. 1986); actors'
+/// own lines are traced anew.
+std::unique_ptr<VisibilityStrategy> make_back_buffer();
+
+}  // namespace afterglow
