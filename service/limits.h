@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace afterglow {
+
+/// How much a client may ask for.
+struct Limits {
+    std::size_t upload_bytes = std::size_t{256} << 20U;   ///< largest scene
+    std::size_t document_bytes = std::size_t{64} << 20U;  ///< largest paths document
+    std::size_t request_bytes = std::size_t{1} << 20U;    ///< largest job request
+    std::int64_t pixels = std::int64_t{4096} * 4096;      ///< width × height of a picture
+    int frames = 100'000;                                 ///< frames of one job
+};
+
+}  // namespace afterglow
