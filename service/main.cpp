@@ -14,6 +14,8 @@
 #include "service/interrupt.h"
 #include "service/render_command.h"
 #include "service/render_options.h"
+#include "service/serve_command.h"
+#include "service/serve_options.h"
 #include "solver/base/error.h"
 
 namespace {
@@ -69,6 +71,15 @@ void run_render(std::span<const char* const> arguments, const afterglow::Interru
     afterglow::render_command(std::get<afterglow::RenderOptions>(asked), interrupt.token(), started);
 }
 
+int run_serve(std::span<const char* const> arguments, const afterglow::Interrupt& interrupt) {
+    const auto asked = afterglow::read_serve_options(arguments);
+    if (const auto* help = std::get_if<afterglow::HelpText>(&asked)) {
+        std::cout << help->text;
+        return 0;
+    }
+    return afterglow::serve(std::get<afterglow::ServeConfig>(asked), interrupt.token());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -79,6 +90,8 @@ int main(int argc, char** argv) {
     try {
         if (command == "render")
             run_render(arguments.subspan(2), interrupt, started);
+        else if (command == "serve")
+            return run_serve(arguments.subspan(2), interrupt);
         else if (command == "version" || command == "--version")
             std::cout << "afterglowd " AFTERGLOW_VERSION "\n";
         else if (command == "help" || command == "--help" || command == "-h")
