@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "solver/scene/area.h"
+#include "solver/scene/place.h"
 #include "solver/scene/placement.h"
 #include "solver/scene/world.h"
 
@@ -31,12 +32,12 @@ std::vector<bool> carriers(const Scene& scene, const std::vector<NodeMotion>& mo
 
 /// Appends a mesh as it looks through `placement`. A mirroring placement turns the corners' order round, so
 /// that fronts stay fronts. Returns how many triangles lost their area.
-std::size_t append(Body& body, const Mesh& mesh, const Placement& placement, const std::string& node) {
+std::size_t append(Body& body, const Mesh& mesh, const Placement& placement, const std::string& place) {
     const auto base = static_cast<Index>(body.positions.size());
     for (const Vec3& position : mesh.positions) {
         const Vec3 p = placement.point(position);
         if (!is_finite(p) || max_channel(glm::abs(p)) > max_coordinate_m)
-            throw Error(ErrorKind::invalid_input, "node '" + node + "'",
+            throw Error(ErrorKind::invalid_input, place,
                         "reaches more than 10,000 km from the origin; check the units");
         body.positions.push_back(p);
     }
@@ -76,12 +77,12 @@ std::vector<Body> make_bodies(const Scene& scene, const std::vector<NodeMotion>&
             attachment.placement = attachment.placement.then(motions[n].local);
         }
         if (node.mesh == no_index) continue;
+        const auto place = place_of("node", node.name, n);
         const auto dropped =
-            append(bodies[attachment.body], scene.meshes[node.mesh], attachment.placement, node.name);
+            append(bodies[attachment.body], scene.meshes[node.mesh], attachment.placement, place);
         if (dropped > 0)
-            warnings.push_back({"node '" + node.name + "'", std::to_string(dropped) +
-                                                                " triangles without area as placed here were "
-                                                                "left out"});
+            warnings.push_back(
+                {place, std::to_string(dropped) + " triangles without area as placed here were left out"});
     }
     // What a scale of zero hides is no actor.
     const auto is_empty = [&](const Body& body) { return &body != bodies.data() && body.triangles.empty(); };

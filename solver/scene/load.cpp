@@ -5,6 +5,7 @@
 
 #include "solver/base/file.h"
 #include "solver/scene/gltf_reader.h"
+#include "solver/scene/obj_reader.h"
 #include "solver/scene/resources.h"
 #include "solver/scene/simplify.h"
 
@@ -19,6 +20,7 @@ Scene read_any(std::string_view bytes, SceneFormat format, const std::string& na
         case SceneFormat::gltf:
             return read_gltf(bytes, format, name, read_resource, config);
         case SceneFormat::obj:
+            return read_obj(bytes, name, read_resource, config);
         case SceneFormat::json:
             break;
     }

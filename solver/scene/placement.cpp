@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "solver/scene/place.h"
 #include "solver/scene/simplify.h"
 
 namespace afterglow {
@@ -62,13 +63,13 @@ Quat view_rotation(const Placement& placement) {
 }
 
 /// The rotation that takes the baked shape to what `linear` makes of it, if there is one.
-Quat rigid_rotation(const Mat3& linear, const Mat3& baked, const std::string& name) {
+Quat rigid_rotation(const Mat3& linear, const Mat3& baked, const std::string& place) {
     const Mat3 turn = linear * glm::inverse(baked);
     const Mat3 gram = glm::transpose(turn) * turn;
     for (int column = 0; column < 3; ++column)
         for (int row = 0; row < 3; ++row)
             if (!(std::abs(gram[column][row] - (column == row ? 1.0F : 0.0F)) < rigid_tolerance))
-                throw Error(ErrorKind::unsupported, "node '" + name + "'",
+                throw Error(ErrorKind::unsupported, place,
                             "turns below an uneven scale and so changes its shape; apply the scale of its "
                             "parents before exporting");
     return glm::normalize(glm::quat_cast(turn));
@@ -164,7 +165,8 @@ PathMaker::ActorFrame PathMaker::actor_frame(Index node) {
         const Placement placement = at(chain, moment);
         const Quat rotation = rigid_by_nature
                                   ? glm::normalize(placement.rotation)
-                                  : rigid_rotation(placement.linear, out.baked, scene_.nodes[node].name);
+                                  : rigid_rotation(placement.linear, out.baked,
+                                                   place_of("node", scene_.nodes[node].name, node));
         keys.push_back({moment.time_s, {placement.origin, rotation}});
     }
     out.path.keys = simplified(keys, tolerance_m_, tolerance_rad_);

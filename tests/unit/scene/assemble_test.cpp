@@ -213,7 +213,7 @@ TEST(Assemble, RejectsAShapeThatChangesAsItTurns) {
         FAIL() << "accepted";
     } catch (const Error& e) {
         EXPECT_EQ(e.kind(), ErrorKind::unsupported);
-        EXPECT_EQ(e.place(), "node 'wheel'");
+        EXPECT_EQ(e.place(), R"(node "wheel")");
     }
 }
 

@@ -35,7 +35,8 @@ TEST(CheckTracks, AcceptsJumpsAndSingleKeys) {
 TEST(CheckTracks, RejectsBrokenKeys) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THAT(refusal_of_keys({}), HasSubstr("no keys"));
-    EXPECT_THAT(refusal_of_keys({{1, Vec3(0)}, {0.5, Vec3(0)}}), HasSubstr("node 'room', translation key 1"));
+    EXPECT_THAT(refusal_of_keys({{1, Vec3(0)}, {0.5, Vec3(0)}}),
+                HasSubstr(R"(node "room", translation key 1)"));
     EXPECT_THAT(refusal_of_keys({{-1, Vec3(0)}}), HasSubstr("time"));
     EXPECT_THAT(refusal_of_keys({{nan, Vec3(0)}}), HasSubstr("time"));
     EXPECT_THAT(refusal_of_keys({{0, Vec3(0, static_cast<float>(nan), 0)}}), HasSubstr("not finite"));
@@ -47,7 +48,7 @@ TEST(CheckTracks, RejectsValuesOutOfRange) {
     EXPECT_THAT(refusal(scene), HasSubstr("not a rotation"));
     scene = room_scene();
     scene.tracks.material_emission.push_back({1, {{0, -1.0F}}});
-    EXPECT_THAT(refusal(scene), HasSubstr("material 'lamp', emission scale key 0"));
+    EXPECT_THAT(refusal(scene), HasSubstr(R"(material "lamp", emission scale key 0)"));
     scene = room_scene();
     scene.tracks.material_reflectance.push_back({0, {{0, Rgb(0.1F, -0.1F, 0)}}});
     EXPECT_THAT(refusal(scene), HasSubstr("negative"));

@@ -17,7 +17,7 @@ TEST(LimitReflectance, RejectsFullReflectionInAClosedScene) {
             FAIL() << "accepted";
         } catch (const Error& e) {
             EXPECT_EQ(e.kind(), ErrorKind::cannot_converge);
-            EXPECT_EQ(e.place(), "material 'wall'");
+            EXPECT_EQ(e.place(), R"(material "wall")");
         }
     }
 }
@@ -28,7 +28,7 @@ TEST(LimitReflectance, TakesItAsAlmostFullWhereLightCanLeave) {
     validate(scene);
     EXPECT_EQ(scene.materials[0].reflectance, Rgb(0.99F, 0.3F, 0.99F));
     ASSERT_THAT(scene.warnings, testing::SizeIs(1));
-    EXPECT_EQ(scene.warnings[0].place, "material 'wall'");
+    EXPECT_EQ(scene.warnings[0].place, R"(material "wall")");
 }
 
 TEST(LimitReflectance, LeavesWhatIsJustBelowOne) {

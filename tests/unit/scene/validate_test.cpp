@@ -39,7 +39,7 @@ TEST(Validate, NamesMeshAndVertexOfWhatIsNotFinite) {
     for (const float bad : {nan, infinity, -infinity}) {
         Scene scene = room_scene();
         scene.meshes[0].positions[5].y = bad;
-        EXPECT_THAT(refusal(scene), HasSubstr("mesh 'box', vertex 5"));
+        EXPECT_THAT(refusal(scene), HasSubstr(R"(mesh "box", vertex 5)"));
     }
     Scene scene = room_scene();
     scene.meshes[0].positions[5].y = 1e20F;
@@ -56,7 +56,7 @@ TEST(Validate, DropsTrianglesWithoutAreaInOneWarning) {
     EXPECT_EQ(mesh.triangles.size(), 12U);
     ASSERT_THAT(scene.warnings, testing::SizeIs(1));
     EXPECT_THAT(scene.warnings[0].message, HasSubstr("2 triangles"));
-    EXPECT_EQ(scene.warnings[0].place, "mesh 'box'");
+    EXPECT_EQ(scene.warnings[0].place, R"(mesh "box")");
 }
 
 TEST(Validate, KeepsTinyTriangles) {
@@ -74,9 +74,9 @@ TEST(Validate, RejectsIndicesOutOfRange) {
         return refusal(scene);
     };
     EXPECT_THAT(broken([](Scene& s) { s.meshes[0].triangles[3].vertices[1] = 8; }),
-                AllOf(HasSubstr("mesh 'box', triangle 3"), HasSubstr("vertex 8")));
+                AllOf(HasSubstr(R"(mesh "box", triangle 3)"), HasSubstr("vertex 8")));
     EXPECT_THAT(broken([](Scene& s) { s.meshes[0].triangles[3].material = 2; }), HasSubstr("material 2"));
-    EXPECT_THAT(broken([](Scene& s) { s.nodes[0].mesh = 1; }), HasSubstr("node 'room': mesh 1"));
+    EXPECT_THAT(broken([](Scene& s) { s.nodes[0].mesh = 1; }), HasSubstr(R"(node "room": mesh 1)"));
     EXPECT_THAT(broken([](Scene& s) { s.nodes[0].camera = 7; }), HasSubstr("camera 7"));
     EXPECT_THAT(broken([](Scene& s) { s.nodes[0].light = 0; }), HasSubstr("light 0"));
     EXPECT_THAT(broken([](Scene& s) { s.materials[0].texture = 0; }), HasSubstr("texture 0"));
@@ -100,16 +100,16 @@ TEST(Validate, RejectsTransformsThatAreNone) {
     EXPECT_THAT(refusal(scene), HasSubstr("quaternion"));
     scene = room_scene();
     scene.nodes[1].local.scale.x = nan;
-    EXPECT_THAT(refusal(scene), HasSubstr("node 'camera'"));
+    EXPECT_THAT(refusal(scene), HasSubstr(R"(node "camera")"));
 }
 
 TEST(Validate, RejectsNegativeReflectanceAndEmission) {
     Scene scene = open_scene();
     scene.materials[0].reflectance.g = -0.1F;
-    EXPECT_THAT(refusal(scene), AllOf(HasSubstr("material 'wall'"), HasSubstr("reflectance")));
+    EXPECT_THAT(refusal(scene), AllOf(HasSubstr(R"(material "wall")"), HasSubstr("reflectance")));
     scene = open_scene();
     scene.materials[1].emission.b = -1;
-    EXPECT_THAT(refusal(scene), AllOf(HasSubstr("material 'lamp'"), HasSubstr("emission")));
+    EXPECT_THAT(refusal(scene), AllOf(HasSubstr(R"(material "lamp")"), HasSubstr("emission")));
     scene.materials[1].emission.b = infinity;
     EXPECT_THAT(refusal(scene), HasSubstr("emission"));
 }
@@ -183,7 +183,7 @@ TEST(Validate, CountsInstancesAgainstTheTriangleLimit) {
 TEST(Validate, ChecksTextures) {
     Scene scene = room_scene();
     scene.textures.push_back({"brick", 2, 2, std::vector<std::uint8_t>(15)});
-    EXPECT_THAT(refusal(scene), HasSubstr("texture 'brick'"));
+    EXPECT_THAT(refusal(scene), HasSubstr(R"(texture "brick")"));
     scene = room_scene();
     scene.meshes[0].texture_coordinates.resize(3);
     EXPECT_THAT(refusal(scene), HasSubstr("texture coordinates"));
@@ -193,7 +193,7 @@ TEST(Validate, ChecksCamerasAndLights) {
     for (const float angle : {0.0F, -1.0F, 3.2F, nan}) {
         Scene scene = room_scene();
         scene.cameras[0].vertical_angle = angle;
-        EXPECT_THAT(refusal(scene), HasSubstr("camera 'camera'"));
+        EXPECT_THAT(refusal(scene), HasSubstr(R"(camera "camera")"));
     }
     Scene scene = room_scene();
     scene.lights.push_back({"spot", Light::Kind::spot, Rgb(1), 1.0F, 0.5F});
