@@ -12,6 +12,7 @@
 
 #include "service/console.h"
 #include "service/interrupt.h"
+#include "service/process_age.h"
 #include "service/render_command.h"
 #include "service/render_options.h"
 #include "service/serve_command.h"
@@ -83,7 +84,9 @@ int run_serve(std::span<const char* const> arguments, const afterglow::Interrupt
 }  // namespace
 
 int main(int argc, char** argv) {
-    const auto started = std::chrono::steady_clock::now();
+    const auto started =
+        std::chrono::steady_clock::now() -
+        std::chrono::duration_cast<std::chrono::steady_clock::duration>(afterglow::process_age());
     const std::span<const char* const> arguments(argv, static_cast<std::size_t>(argc));
     const std::string_view command = argc > 1 ? argv[1] : "";
     const afterglow::Interrupt interrupt;

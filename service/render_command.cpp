@@ -84,13 +84,15 @@ void render_command(const RenderOptions& options, const std::stop_token& stop, C
     const Context context(options.threads, stop, [&](const Progress& p) { console.progress(subject, p); });
     const double steps = range.last - range.first + 2;  // preparing counts as a frame
     SequenceState state = make_state(std::move(world), options.sequence, context.part(0, 1 / steps));
-    for (const Warning& warning : state.warnings()) console.warning(warning);
     report.static_pass = Clock::now() - loaded;
+    std::size_t warnings_shown = 0;
     for (int frame = range.first; frame <= range.last; ++frame) {
         subject = "frame " + std::to_string(frame);
         const double done = frame - range.first + 1;
         const Context part = context.part(done / steps, (done + 1) / steps);
         report.frames.push_back(render_frame(state, frame, options.out, part));
+        for (; warnings_shown < state.warnings().size(); ++warnings_shown)
+            console.warning(state.warnings()[warnings_shown]);
         console.line(finished_line(report.frames.back(), range));
     }
 
