@@ -11,8 +11,16 @@ namespace {
 
 using Column = glm::dvec3;
 
-Transform transform_of(const JsonView& element) {
-    if (const auto matrix = element.find("matrix")) return decomposed(matrix->as_numbers(16), *matrix);
+Transform transform_of(const JsonView& element, const std::string& name) {
+    if (const auto matrix = element.find("matrix")) {
+        const auto numbers = matrix->as_numbers(16);
+        try {
+            return decomposed(numbers, *matrix);
+        } catch (const Error& e) {
+            // People know their nodes by name, not by number.
+            throw Error(e.kind(), e.place(), in_quotes(name) + ": " + e.message());
+        }
+    }
     Transform out;
     if (const auto translation = element.find("translation")) out.translation = translation->as_vec3();
     if (const auto scale = element.find("scale")) out.scale = scale->as_vec3();
@@ -107,7 +115,7 @@ Node read_node(const Document& document, Index position, const std::vector<Index
     const JsonView& element = document.nodes[position];
     Node node;
     node.name = name_of(element, "node", position);
-    node.local = transform_of(element);
+    node.local = transform_of(element, node.name);
     node.mesh = optional_index(element, "mesh", scene.meshes.size());
     const Index camera = optional_index(element, "camera", cameras.size());
     if (camera != no_index) node.camera = cameras[camera];
