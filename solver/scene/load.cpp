@@ -5,6 +5,7 @@
 
 #include "solver/base/file.h"
 #include "solver/scene/gltf_reader.h"
+#include "solver/scene/json_reader.h"
 #include "solver/scene/obj_reader.h"
 #include "solver/scene/resources.h"
 #include "solver/scene/simplify.h"
@@ -22,7 +23,7 @@ Scene read_any(std::string_view bytes, SceneFormat format, const std::string& na
         case SceneFormat::obj:
             return read_obj(bytes, name, read_resource, config);
         case SceneFormat::json:
-            break;
+            return read_json_scene(bytes, name, read_resource, config);
     }
     throw Error(ErrorKind::unsupported, name, "this format is not read");
 }

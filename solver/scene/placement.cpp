@@ -17,36 +17,6 @@ constexpr double max_composed = 10e6;
 /// How far the lengths and angles of a rigid shape may seem to change through rounding.
 constexpr float rigid_tolerance = 1e-4F;
 
-/// Adds the key times of one track; both sides where it jumps.
-template <class T>
-void add_moments(std::vector<Moment>& moments, const std::vector<Key<T>>& keys) {
-    for (std::size_t k = 0; k < keys.size(); ++k) {
-        moments.push_back({keys[k].time_s, Side::after});
-        if (k > 0 && keys[k - 1].time_s == keys[k].time_s) moments.push_back({keys[k].time_s, Side::before});
-    }
-}
-
-bool is_before(const Moment& a, const Moment& b) {
-    return a.time_s != b.time_s ? a.time_s < b.time_s : a.side < b.side;
-}
-
-bool is_same(const Moment& a, const Moment& b) {
-    return a.time_s == b.time_s && a.side == b.side;
-}
-
-/// Adds the times of frames between the first and the last moment, away from those there are.
-void add_frames(std::vector<Moment>& moments, double frames_per_second) {
-    constexpr double apart_s = 1e-6;
-    const std::size_t count = moments.size();
-    for (std::size_t k = 0; k + 1 < count; ++k) {
-        const double from = moments[k].time_s + apart_s;
-        const double to = moments[k + 1].time_s - apart_s;
-        for (double frame = std::ceil(from * frames_per_second); frame / frames_per_second < to; ++frame)
-            moments.push_back({frame / frames_per_second, Side::after});
-    }
-    std::sort(moments.begin(), moments.end(), is_before);
-}
-
 Mat3 matrix_of(const Quat& rotation) {
     return glm::mat3_cast(rotation);
 }
@@ -140,8 +110,7 @@ std::vector<Moment> PathMaker::moments(const std::vector<Index>& chain, Scales s
         bends |= !motions_[node].rotation.empty() && (node != chain.back() || scales == Scales::uneven);
     }
     if (moments.empty()) moments.push_back({0, Side::after});
-    std::sort(moments.begin(), moments.end(), is_before);
-    moments.erase(std::unique(moments.begin(), moments.end(), is_same), moments.end());
+    sort_moments(moments);
 
     const double frames = (moments.back().time_s - moments.front().time_s) * scene_.frames_per_second;
     const double count = static_cast<double>(moments.size()) + (bends ? frames : 0.0);

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "solver/scene/keys.h"
+#include "solver/scene/moments.h"
 #include "solver/scene/scene.h"
 #include "solver/scene/world.h"
 
@@ -38,12 +38,6 @@ struct Placement {
     /// This placement with a transform applied below it.
     [[nodiscard]] Placement then(const Transform& local) const;
     [[nodiscard]] Vec3 point(const Vec3& p) const { return linear * p + origin; }
-};
-
-/// A point in time at which a path needs a key.
-struct Moment {
-    double time_s = 0;
-    Side side = Side::after;
 };
 
 /// Composes the motions along chains of nodes into rigid paths. Thread-safety: one thread at a time.
