@@ -78,7 +78,9 @@ std::uint64_t trace_light_lines(const LightLines& light_lines, const SightLines&
                                 const Context& context) {
     std::atomic<std::uint64_t> traced = 0;
     const Index per_patch = light_lines.lines_per_patch();
-    context.for_chunks(per_patch > 0 ? lines.blocks().size() : 0, 4, [&](std::size_t begin, std::size_t end) {
+    const std::size_t blocks =
+        scope == Scope::static_geometry ? lines.static_blocks() : lines.blocks().size();
+    context.for_chunks(per_patch > 0 ? blocks : 0, 4, [&](std::size_t begin, std::size_t end) {
         RayPacket rays;
         std::array<float, 16> contribution;
         std::uint64_t count = 0;

@@ -46,10 +46,11 @@ class LightLines {
     SobolPoints points_;
 };
 
-/// Traces light lines and writes the contribution of each that is not blocked, 0 for the others. With
-/// Scope::everything all lines of all blocks are traced anew. With Scope::actors, `unblocked` must hold
-/// contributions without actors for static receivers; only their lines to static lamps that are not yet 0 are
-/// traced against the actors, everything else anew. Returns the number of rays. Errors: cancelled.
+/// Traces light lines and writes the contribution of each that is not blocked, 0 for the others.
+/// Scope::static_geometry: those of static receivers only, without actors. Scope::everything: all, traced
+/// anew. Scope::actors: `unblocked` holds the contributions without actors of static receivers; only their
+/// lines to static lamps that are not yet 0 are traced, against the actors alone, and everything else anew.
+/// Returns the number of rays. Errors: cancelled.
 std::uint64_t trace_light_lines(const LightLines& light_lines, const SightLines& lines, const PatchMesh& mesh,
                                 const RayCaster& caster, Scope scope, std::vector<float>& unblocked,
                                 const Context& context);
