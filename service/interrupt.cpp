@@ -25,7 +25,7 @@ Interrupt::Interrupt() {
 
 Interrupt::~Interrupt() {
     closing_ = true;
-    pthread_kill(waiting_.native_handle(), SIGTERM);
+    pthread_kill(waiting_.native_handle(), SIGINT);
     waiting_.join();
 }
 
