@@ -99,9 +99,10 @@ Problem problem_of(const std::exception_ptr& caught) {
         return {503, "out_of_memory", "not enough memory for this request", ""};
     } catch (const std::exception& e) {
         tell_operator(e.what());
-        return {500, "internal", "the service failed; this is a defect of the service, not of the request",
-                ""};
+    } catch (...) {
+        tell_operator("something was thrown that is no exception");
     }
+    return {500, "internal", "the service failed; this is a defect of the service, not of the request", ""};
 }
 
 Json to_json(const Problem& problem) {
