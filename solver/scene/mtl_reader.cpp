@@ -49,6 +49,14 @@ MapArguments map_arguments(const LineReader& lines) {
     return {rest.substr(static_cast<std::size_t>(last_words[k].data() - rest.data())), k > 0};
 }
 
+/// A material as far as its statements have been read.
+struct Draft {
+    Material material;
+    Index emission_map = no_index;
+    float opacity = 1;
+    bool is_glass = false;
+};
+
 Rgb colour(const LineReader& lines) {
     if (lines.arguments().empty() || lines.arguments()[0] == "spectral" || lines.arguments()[0] == "xyz")
         lines.fail("only colours given as red, green and blue are read");
@@ -162,13 +170,6 @@ class MtlReader::Library {
         if (count > shown) list += " and " + std::to_string(count - shown) + " more";
         owner_.scene_.warnings.push_back({file_, message + list});
     }
-
-    struct Draft {
-        Material material;
-        Index emission_map = no_index;
-        float opacity = 1;
-        bool is_glass = false;
-    };
 
     MtlReader& owner_;
     std::string file_;
