@@ -18,7 +18,9 @@ namespace afterglow {
 
 namespace {
 
-constexpr int write_timeout_s = 10;  // a reader that takes nothing for this long is given up
+// A reader that takes nothing for this long is given up. This and the next are also how long a stop may take.
+constexpr int write_timeout_s = 8;
+constexpr int keep_alive_timeout_s = 2;
 constexpr int keep_alive_requests = 1000;
 
 /// The library's default also sets SO_REUSEPORT, with which two servers share a port and each gets some of
@@ -144,6 +146,7 @@ class HttpServer::Parts {
         server_.set_socket_options(set_socket_options);
         server_.set_tcp_nodelay(true);  // events are small and must not wait for each other
         server_.set_write_timeout(write_timeout_s);
+        server_.set_keep_alive_timeout(keep_alive_timeout_s);
         server_.set_keep_alive_max_count(keep_alive_requests);
         server_.set_payload_max_length(config_.max_body_bytes);
         server_.new_task_queue = [threads = config_.max_connections] {

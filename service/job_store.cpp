@@ -91,20 +91,25 @@ bool JobStore::start(const std::string& id) {
 }
 
 bool JobStore::end(const std::string& id, JobState state, const std::optional<Problem>& error) {
-    const std::lock_guard lock(mutex_);
-    Record* record = active(id);
-    if (record == nullptr || !has_ended(state) || !may_follow(record->job.state, state)) return false;
-    Job& job = record->job;
-    job.state = state;
-    job.ended = now();
-    job.error = error;
-    job.doing.clear();
-    job.remaining.reset();
-    if (state == JobState::succeeded) job.progress = 1;
-    if (error) record->events->append(EventKind::error, dump(to_json(*error)));
-    record->events->append(EventKind::job, dump(to_json(job)));
-    record->events->append(EventKind::end, dump({{"state", name_of(state)}}));
-    record->stop.request_stop();
+    std::stop_source stop(std::nostopstate);
+    {
+        const std::lock_guard lock(mutex_);
+        Record* record = active(id);
+        if (record == nullptr || !has_ended(state) || !may_follow(record->job.state, state)) return false;
+        Job& job = record->job;
+        job.state = state;
+        job.ended = now();
+        job.error = error;
+        job.doing.clear();
+        job.remaining.reset();
+        if (state == JobState::succeeded) job.progress = 1;
+        if (error) record->events->append(EventKind::error, dump(to_json(*error)));
+        record->events->append(EventKind::job, dump(to_json(job)));
+        record->events->append(EventKind::end, dump({{"state", name_of(state)}}));
+        stop = record->stop;
+    }
+    // Outside the lock, since whoever is told of the stop may ask for the job.
+    stop.request_stop();
     return true;
 }
 
