@@ -46,7 +46,7 @@ Bytes8 decode_picture(std::string_view bytes, const std::string& place);
 /// Reads a float picture (EXR). Errors: not_found, invalid_input.
 Picture read_picture(const std::filesystem::path& path);
 
-/// Encodes as OpenEXR, 32-bit float RGB, ZIP-compressed.
+/// Encodes as OpenEXR, 32-bit float RGB, uncompressed.
 std::string encode_exr(const Picture& picture);
 /// Encodes 8-bit RGB as PNG. `rgb` has width × height × 3 bytes, already sRGB-coded.
 std::string encode_png(int width, int height, const std::vector<std::uint8_t>& rgb);
