@@ -59,7 +59,7 @@ fs::path relative_path(const std::string& uri) {
     if (text.empty()) refuse(uri, "names no file");
     if (text.find('\0') != std::string::npos) refuse(uri, "contains a zero byte");
     std::replace(text.begin(), text.end(), '\\', '/');
-    const fs::path path = fs::path(text).lexically_normal();
+    fs::path path = fs::path(text).lexically_normal();
     if (path.has_root_path() || has_scheme(text))
         refuse(uri, "only paths relative to the scene's folder are read");
     if (*path.begin() == "..") refuse(uri, "leads outside the scene's folder");
