@@ -73,6 +73,29 @@ class RowCompiler {
     }
 
   private:
+    /// What a patch's sight lines meet.
+    struct Count {
+        Index outside = 0, buried = 0, on_lamps = 0, on_others = 0;
+        [[nodiscard]] Index valid() const { return outside + on_lamps + on_others; }
+    };
+
+    template <class ByLightLines>
+    Count count_lines(const PatchBlock& block, Index lane, const ByLightLines& by_light_lines) const {
+        Count count;
+        for (Index d = 0; d < seen_.directions; ++d) {
+            const Index target = seen_.visible[lines_.line(block, d, lane)];
+            if (target == sees_nothing)
+                ++count.outside;
+            else if (target == sees_inside)
+                ++count.buried;
+            else if (by_light_lines(target))
+                ++count.on_lamps;
+            else
+                ++count.on_others;
+        }
+        return count;
+    }
+
     void compile_row(std::size_t block_index, const PatchBlock& block, Index lane, RowBuilder& row) const {
         const Index patch = block.first + lane;
         const std::vector<char> near = lamps_near(patch);
@@ -80,40 +103,40 @@ class RowCompiler {
             const Index lamp = lamps_.lamp_of_patch[target];
             return lamp != no_index && near[lamp] == 0;
         };
+        const Count count = count_lines(block, lane, by_light_lines);
+        out_.valid_share[patch] = static_cast<float>(count.valid()) / static_cast<float>(seen_.directions);
+        if (count.valid() == 0) return;
 
-        Index buried = 0, on_lamps = 0, outside = 0;
-        for (Index d = 0; d < seen_.directions; ++d) {
-            const Index target = seen_.visible[lines_.line(block, d, lane)];
-            if (target == sees_nothing)
-                ++outside;
-            else if (target == sees_inside)
-                ++buried;
-            else if (by_light_lines(target))
-                ++on_lamps;
-        }
-        const Index valid = seen_.directions - buried;
-        out_.valid_share[patch] = static_cast<float>(valid) / static_cast<float>(seen_.directions);
-        if (valid == 0) return;
-
+        // Buried origins gave zeros; the others stand for the whole patch.
+        const float scale = 1 / out_.valid_share[patch];
         float from_lamps = 0;
-        for (Index k = 0; k < light_lines_.lines_per_patch(); ++k) {
-            // Buried origins gave zeros; the others stand for the whole patch.
-            const float contribution =
-                seen_.light_contribution[light_lines_.line(block, k, lane)] / out_.valid_share[patch];
-            const Index target = light_lines_.lamp_patch(block_index, k);
-            if (contribution <= 0 || !by_light_lines(target)) continue;
-            from_lamps += contribution;
-            row.add(target, contribution);
+        for (Index k = 0; k < light_lines_.lines_per_patch(); ++k)
+            if (by_light_lines(light_lines_.lamp_patch(block_index, k)))
+                from_lamps += scale * seen_.light_contribution[light_lines_.line(block, k, lane)];
+        const Index others = count.outside + count.on_others;
+        if (from_lamps >= 1 || others == 0) {
+            // Lamps fill the view: sight lines count them better than light lines can.
+            add_sight_lines(block, lane, 1 / static_cast<float>(count.valid()), row,
+                            [](Index) { return true; });
+            out_.sky[patch] = static_cast<float>(count.outside) / static_cast<float>(count.valid());
+            return;
         }
-        const Index others = valid - on_lamps;
-        if (others == 0) return;
-        const float weight = std::max(0.0F, 1 - from_lamps) / static_cast<float>(others);
-        out_.sky[patch] = weight * static_cast<float>(outside);
-        if (weight <= 0) return;
+        for (Index k = 0; k < light_lines_.lines_per_patch(); ++k) {
+            const Index target = light_lines_.lamp_patch(block_index, k);
+            const float contribution = scale * seen_.light_contribution[light_lines_.line(block, k, lane)];
+            if (contribution > 0 && by_light_lines(target)) row.add(target, contribution);
+        }
+        const float weight = (1 - from_lamps) / static_cast<float>(others);
+        add_sight_lines(block, lane, weight, row, [&](Index target) { return !by_light_lines(target); });
+        out_.sky[patch] = weight * static_cast<float>(count.outside);
+    }
+
+    template <class Counts>
+    void add_sight_lines(const PatchBlock& block, Index lane, float weight, RowBuilder& row,
+                         const Counts& counts) const {
         for (Index d = 0; d < seen_.directions; ++d) {
             const Index target = seen_.visible[lines_.line(block, d, lane)];
-            if (target != sees_nothing && target != sees_inside && !by_light_lines(target))
-                row.add(target, weight);
+            if (target != sees_nothing && target != sees_inside && counts(target)) row.add(target, weight);
         }
     }
 

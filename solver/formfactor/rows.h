@@ -24,8 +24,9 @@ struct FormFactors {
 
 /// Rows of the receiver-owned lines: lamps by light lines, everything else by cosine-weighted sight lines of
 /// equal weight, scaled so that a row and its sky sum to 1. Lines with buried origins count for nothing: the
-/// rest stand for the whole patch. Lamps near a patch count by its sight lines (see LampConfig::near_share).
-/// A column stands once in a row. Same result for any number of threads. Errors: cancelled.
+/// rest stand for the whole patch. Lamps near a patch, or that fill its view, count by its sight lines (see
+/// LampConfig::near_share). A column stands once in a row. Same result for any number of threads. Errors:
+/// cancelled.
 FormFactors compile_rows(const PatchMesh& mesh, const SightLines& lines, const LightLines& light_lines,
                          const Lamps& lamps, const RayCaster& placed, const SeenLines& seen,
                          const Context& context);

@@ -87,7 +87,7 @@ class Groups {
         return i;
     }
     void join(Index a, Index b) {
-        const auto [low, high] = std::minmax(root(a), root(b));
+        const auto [low, high] = std::minmax({root(a), root(b)});  // by value: roots are temporaries
         parent_[high] = low;
     }
 

@@ -41,9 +41,9 @@ void FrameRefinement::look(Index directions, VisibilityStrategy& strategy, const
     if (directions <= directions_) return;
     std::uint64_t static_rays = 0;
     if (strategy.needs_background())
-        static_rays = advance_static_pass(parts_, directions, context.part(0, 0.5));
+        static_rays = advance_static_pass(parts_, directions, context.part(0, 0.4));
     const Stopwatch watch;
-    context.report(0.5, "looking along the sight lines");
+    context.report(0.4, "looking along the sight lines");
     statistics_.rays_traced +=
         static_rays + strategy.update(parts_.lines(), {directions_, directions}, parts_.visible, context);
     directions_ = directions;
@@ -68,7 +68,7 @@ RadiosityProblem FrameRefinement::problem() const {
 
 void FrameRefinement::solve(double asked_error, const Context& context) {
     const Stopwatch watch;
-    context.report(0.8, "solving the light");
+    context.report(0.6, "solving the light");
     ProgressiveConfig config;
     config.asked_error = asked_error;
     // Cold every time: the same light whatever was solved for a preliminary picture before.
@@ -86,7 +86,7 @@ void FrameRefinement::solve(double asked_error, const Context& context) {
 Picture FrameRefinement::picture(int width, int height, int samples, std::span<const Rgb> irradiance,
                                  const Context& context) {
     const Stopwatch watch;
-    context.report(0.9, "rendering the picture");
+    context.report(0.8, "rendering the picture");
     const LitWorld lit{&parts_.world, &parts_.mesh, &*parts_.interpolation, &parts_.caster,
                        materials_,    irradiance,   factors_.valid_share};
     const CameraView view = view_at(parts_.camera, time_s_, width, height);

@@ -107,6 +107,7 @@ std::uint64_t advance_static_pass(SequenceState::Parts& parts, Index directions,
     }
     std::uint64_t rays = 0;
     if (parts.background.directions < directions) {
+        context.report(0, "tracing the static sight lines");
         rays = extend_static_lines(parts.background, parts.mesh, *parts.sight, *parts.light, parts.caster,
                                    directions, context);
         if (!folder.empty() && directions == parts.sight->lines_per_patch()) {

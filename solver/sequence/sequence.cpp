@@ -1,7 +1,6 @@
 #include "solver/sequence/sequence.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -73,6 +72,18 @@ class Publisher {
     int count_ = 0;
 };
 
+/// How many lines of a patch each preliminary picture of a frame is made from: few at first where nothing has
+/// been shown yet.
+std::vector<Index> preliminary_looks(const SequenceState::Parts& parts) {
+    const Index all = parts.sight->lines_per_patch();
+    std::vector<Index> looks;
+    if (parts.visible_before.empty())
+        for (const Index few : {first_look, second_look})
+            if (few < all) looks.push_back(few);
+    looks.push_back(all);
+    return looks;
+}
+
 std::uint64_t count_changes(const std::vector<Index>& now, const std::vector<Index>& before) {
     if (before.empty()) return 0;
     std::uint64_t changes = 0;
@@ -110,24 +121,26 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     if (frame_number < 0) throw Error(ErrorKind::invalid_input, "frame", "must be 0 or more");
     const Stopwatch watch;
     const Milliseconds static_before = parts.statistics.static_pass;
-    if (!parts.exposure_ev) parts.exposure_ev = find_exposure(parts, context);
+    if (!parts.exposure_ev) parts.exposure_ev = find_exposure(parts, context.part(0, 0.1));
 
     FrameRefinement frame(parts, parts.time_of(frame_number));
     Publisher publisher(parts, frame_number, on_revision);
     const Index all = parts.sight->lines_per_patch();
     if (publisher.wants_preliminary()) {
-        const bool first = parts.visible_before.empty();
-        for (const Index directions : {first_look, second_look, all}) {
-            if (directions > all || (directions < all && !first)) continue;
-            frame.look(directions, *parts.strategy, context);
-            frame.solve(coarse_error, context);
-            publisher.publish(frame.preliminary_picture(parts.config.width, parts.config.height, context),
+        const Context part = context.part(0.1, 0.6);
+        for (const Index directions : preliminary_looks(parts)) {
+            const double done = static_cast<double>(directions) / all;
+            const Context stage = part.part(0.25 * done, done);
+            frame.look(directions, *parts.strategy, stage);
+            frame.solve(coarse_error, stage);
+            publisher.publish(frame.preliminary_picture(parts.config.width, parts.config.height, stage),
                               frame.certificate().residual, false);
         }
     }
-    frame.look(all, *parts.strategy, context);
-    frame.solve(parts.config.asked_error, context);
-    Picture picture = frame.final_picture(context);
+    const Context last = context.part(0.6, 1);
+    frame.look(all, *parts.strategy, last);
+    frame.solve(parts.config.asked_error, last);
+    Picture picture = frame.final_picture(last);
     publisher.publish(std::move(picture), frame.certificate().residual, true);
 
     FrameStatistics statistics = frame.statistics();

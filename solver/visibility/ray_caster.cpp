@@ -76,7 +76,8 @@ void to_embree(const RayPacket& in, RTCRay16& out, std::array<int, 16>& valid) {
     std::memcpy(out.dir_z, in.direction_z.data(), sizeof(out.dir_z));
     std::memcpy(out.tfar, in.far.data(), sizeof(out.tfar));
     for (std::size_t k = 0; k < 16; ++k) {
-        valid[k] = k < in.count ? -1 : 0;
+        // A ray that ends where it starts can meet nothing.
+        valid[k] = k < in.count && in.far[k] > 0 ? -1 : 0;
         out.tnear[k] = 0;
         out.time[k] = 0;
         out.mask[k] = ~0U;
@@ -137,10 +138,19 @@ struct RayCaster::Scenes {
         return out;
     }
 
+    /// Calls `trace(scene, context)` for each scene that is meant. `flags` go for the furniture;
+    /// Embree 3.13's coherent packets can loop for ever in a scene of instances when only some lanes are
+    /// live, so actors never get them.
     template <class Trace>
-    void for_scenes(Scope scope, Trace trace) const {
-        if (scope != Scope::actors) trace(static_cast<RTCScene>(bodies[furniture]));
-        if (scope != Scope::static_geometry && !instances.empty()) trace(static_cast<RTCScene>(actors));
+    void for_scenes(Scope scope, RTCIntersectContextFlags flags, Trace trace) const {
+        if (scope != Scope::actors) {
+            RTCIntersectContext context = make_context(flags);
+            trace(static_cast<RTCScene>(bodies[furniture]), &context);
+        }
+        if (scope != Scope::static_geometry && !instances.empty()) {
+            RTCIntersectContext context = make_context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+            trace(static_cast<RTCScene>(actors), &context);
+        }
     }
 };
 
@@ -180,28 +190,28 @@ const Pose& RayCaster::pose(Index body) const {
 }
 
 Hit RayCaster::nearest(const Ray& ray, Scope scope) const {
-    RTCIntersectContext context = make_context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
     RTCRayHit query{to_embree(ray), {}};
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     // The second scene is traced only up to what the first has found, since tfar shrinks with each hit.
-    scenes_->for_scenes(scope, [&](RTCScene scene) { rtcIntersect1(scene, &context, &query); });
+    scenes_->for_scenes(
+        scope, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT,
+        [&](RTCScene scene, RTCIntersectContext* context) { rtcIntersect1(scene, context, &query); });
     return scenes_->found({query.hit.geomID, query.hit.instID[0], query.hit.primID, query.ray.tfar,
                            query.hit.u, query.hit.v, Vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z),
                            ray.direction});
 }
 
 bool RayCaster::occluded(const Ray& ray, Scope scope) const {
-    RTCIntersectContext context = make_context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
     RTCRay query = to_embree(ray);
-    scenes_->for_scenes(scope, [&](RTCScene scene) {
-        if (query.tfar >= 0) rtcOccluded1(scene, &context, &query);
-    });
+    scenes_->for_scenes(scope, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT,
+                        [&](RTCScene scene, RTCIntersectContext* context) {
+                            if (query.tfar >= 0) rtcOccluded1(scene, context, &query);
+                        });
     return query.tfar < 0;
 }
 
 void RayCaster::nearest(const RayPacket& rays, Scope scope, HitPacket& hits) const {
-    RTCIntersectContext context = make_context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
     RTCRayHit16 query;
     alignas(64) std::array<int, 16> valid;
     to_embree(rays, query.ray, valid);
@@ -209,8 +219,10 @@ void RayCaster::nearest(const RayPacket& rays, Scope scope, HitPacket& hits) con
         query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
         query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
-    scenes_->for_scenes(scope,
-                        [&](RTCScene scene) { rtcIntersect16(valid.data(), scene, &context, &query); });
+    scenes_->for_scenes(scope, RTC_INTERSECT_CONTEXT_FLAG_COHERENT,
+                        [&](RTCScene scene, RTCIntersectContext* context) {
+                            rtcIntersect16(valid.data(), scene, context, &query);
+                        });
     for (std::size_t k = 0; k < rays.count; ++k) {
         const Vec3 normal(query.hit.Ng_x[k], query.hit.Ng_y[k], query.hit.Ng_z[k]);
         hits[k] = scenes_->found({query.hit.geomID[k], query.hit.instID[0][k], query.hit.primID[k],
@@ -220,15 +232,15 @@ void RayCaster::nearest(const RayPacket& rays, Scope scope, HitPacket& hits) con
 }
 
 std::uint32_t RayCaster::occluded(const RayPacket& rays, Scope scope) const {
-    RTCIntersectContext context = make_context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
     RTCRay16 query;
     alignas(64) std::array<int, 16> valid;
     to_embree(rays, query, valid);
-    scenes_->for_scenes(scope, [&](RTCScene scene) {
-        rtcOccluded16(valid.data(), scene, &context, &query);
-        for (unsigned k = 0; k < 16; ++k)
-            if (query.tfar[k] < 0) valid[k] = 0;
-    });
+    scenes_->for_scenes(scope, RTC_INTERSECT_CONTEXT_FLAG_COHERENT,
+                        [&](RTCScene scene, RTCIntersectContext* context) {
+                            rtcOccluded16(valid.data(), scene, context, &query);
+                            for (unsigned k = 0; k < 16; ++k)
+                                if (query.tfar[k] < 0) valid[k] = 0;
+                        });
     std::uint32_t mask = 0;
     for (unsigned k = 0; k < rays.count; ++k)
         if (query.tfar[k] < 0) mask |= 1U << k;

@@ -9,7 +9,7 @@ namespace afterglow {
 struct ReachConfig {
     float spacing_m = 0.2F;    ///< about one sample origin for each square of this edge
     int rays_per_origin = 16;  ///< directions from each origin
-    int max_origins = 4096;    ///< a surface side
+    int max_origins = 256;     ///< a surface side
     std::uint64_t seed = 1;    ///< of the directions
 };
 

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "solver/visibility/light_lines.h"
+#include "tests/support/worlds.h"
+
+namespace afterglow::testing {
+
+/// A world meshed on all sides, with its lines laid: what tests of visibility and form factors start from.
+struct LinedWorld {
+    World world;
+    RayCaster caster;
+    PatchMesh mesh;
+    Lamps lamps;
+    SightLines sight;
+    LightLines light;
+
+    LinedWorld(World w, float patch_size_m, Index lines_per_patch, Index light_lines_per_patch = 16)
+        : world(std::move(w)),
+          caster(world),
+          mesh(mesh_all(world, patch_size_m)),
+          lamps(find_lamps(world, mesh)),
+          sight(mesh, world, lines_per_patch, 1),
+          light(mesh, sight, lamps, light_lines_per_patch, 2) {}
+    LinedWorld(const LinedWorld&) = delete;
+    LinedWorld& operator=(const LinedWorld&) = delete;
+
+    static PatchMesh mesh_all(const World& world, float size) {
+        Surfaces surfaces = find_surfaces(world, {.facet_size_m = size});
+        const SideMask all(surfaces.list.size(), {true, true});
+        return make_patches(world, std::move(surfaces), all, {.patch_size_m = size});
+    }
+};
+
+}  // namespace afterglow::testing

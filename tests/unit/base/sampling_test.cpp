@@ -1,0 +1,55 @@
+#include "solver/base/sampling.h"
+
+#include <cmath>
+#include <set>
+
+#include <gmock/gmock.h>
+
+namespace afterglow {
+namespace {
+
+TEST(Sobol, EveryScramblingIsStratifiedInItsFirstTwoDimensions) {
+    constexpr std::size_t count = 256;
+    const SobolPoints points(count);
+    for (const std::uint64_t seed : {1U, 2U, 77U}) {
+        // Each of the elementary intervals of 256 points holds exactly one: 256×1, 128×2, … 1×256 cells.
+        for (std::size_t across = 1; across <= count; across *= 2) {
+            const std::size_t down = count / across;
+            std::set<std::pair<int, int>> cells;
+            for (std::size_t k = 0; k < count; ++k) {
+                const Sample4 s = points.at(k, seed);
+                cells.emplace(static_cast<int>(s[0] * static_cast<float>(across)),
+                              static_cast<int>(s[1] * static_cast<float>(down)));
+            }
+            EXPECT_EQ(cells.size(), count) << across;
+        }
+        for (std::size_t d = 2; d < 4; ++d) {
+            std::set<int> strata;
+            for (std::size_t k = 0; k < count; ++k)
+                strata.insert(static_cast<int>(points.at(k, seed)[d] * count));
+            EXPECT_EQ(strata.size(), count);
+        }
+    }
+}
+
+TEST(Sobol, SeedsGiveDifferentPoints) {
+    const SobolPoints points(4);
+    EXPECT_NE(points.at(1, 1), points.at(1, 2));
+    EXPECT_EQ(points.at(1, 1), points.at(1, 1));
+}
+
+TEST(CosineDirection, IsUnitAboveTheHorizonWithMeanCosineTwoThirds) {
+    const SobolPoints points(4096);
+    double mean = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const Sample4 s = points.at(k, 9);
+        const Vec3 d = cosine_direction(s[0], s[1]);
+        EXPECT_NEAR(glm::length(d), 1, 1e-5);
+        EXPECT_GE(d.z, 0);
+        mean += d.z / 4096.0;
+    }
+    EXPECT_NEAR(mean, 2.0 / 3, 1e-3);
+}
+
+}  // namespace
+}  // namespace afterglow
