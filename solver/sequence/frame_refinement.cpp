@@ -74,7 +74,7 @@ void FrameRefinement::solve(double asked_error, const Context& context) {
     // Cold every time: the same light whatever was solved for a preliminary picture before.
     light_ = make_progressive_state(problem(), context);
     do {
-        certificate_ = step(*light_, problem(), columns_, config, context);
+        certificate_ = step(*light_, problem(), columns_, config, context.part(0.6, 0.8));
     } while (light_->status == ProgressiveStatus::running);
     statistics_.shots += light_->shots;
     statistics_.residual = certificate_.residual;

@@ -13,9 +13,8 @@ namespace afterglow {
 
 namespace {
 
-// A first look: enough lines to tell light from dark.
-constexpr Index first_look = 16;
-constexpr Index second_look = 64;
+// Lines of a patch that the automatic exposure is taken from: enough to tell light from dark.
+constexpr Index exposure_look = 16;
 // Certificate at which a preliminary picture is good enough to be shown.
 constexpr double coarse_error = 0.5;
 // Side of the picture that the automatic exposure is taken from.
@@ -36,7 +35,7 @@ std::unique_ptr<VisibilityStrategy> make_strategy(Visibility visibility) {
 float find_exposure(SequenceState::Parts& parts, const Context& context) {
     if (parts.config.exposure_ev) return static_cast<float>(*parts.config.exposure_ev);
     FrameRefinement frame(parts, 0);
-    frame.look(first_look, *parts.strategy, context);
+    frame.look(exposure_look, *parts.strategy, context);
     frame.solve(coarse_error, context);
     const int height = std::min(parts.config.height, exposure_picture_height);
     const int width = std::max(1, height * parts.config.width / parts.config.height);
@@ -77,9 +76,7 @@ class Publisher {
 std::vector<Index> preliminary_looks(const SequenceState::Parts& parts) {
     const Index all = parts.sight->lines_per_patch();
     std::vector<Index> looks;
-    if (parts.visible_before.empty())
-        for (const Index few : {first_look, second_look})
-            if (few < all) looks.push_back(few);
+    if (parts.visible_before.empty()) looks = {std::max(all / 16, Index{4}), std::max(all / 4, Index{8})};
     looks.push_back(all);
     return looks;
 }
