@@ -9,6 +9,8 @@ namespace afterglow {
 namespace {
 
 constexpr int max_depth = 64;
+// The ordered object type looks members up one by one, so that a huge object would cost its square.
+constexpr std::size_t max_members = 4096;
 
 /// One step of a JSON pointer, escaped as RFC 6901 asks.
 std::string escape(std::string_view key) {
@@ -60,7 +62,16 @@ std::string shown(const Json& value) {
 Json parse_json(std::string_view text, const std::string& source) {
     check_depth(text, source);
     try {
-        return Json::parse(text.begin(), text.end());
+        std::vector<std::size_t> members;
+        const auto count_members = [&](int, Json::parse_event_t event, const Json&) {
+            if (event == Json::parse_event_t::object_start) members.push_back(0);
+            if (event == Json::parse_event_t::object_end) members.pop_back();
+            if (event == Json::parse_event_t::key && ++members.back() > max_members)
+                throw Error(ErrorKind::too_large, source,
+                            "a JSON object has more than " + std::to_string(max_members) + " members");
+            return true;
+        };
+        return Json::parse(text.begin(), text.end(), count_members);
     } catch (const Json::parse_error& e) {
         throw Error(ErrorKind::invalid_input, source, "not valid JSON at byte " + std::to_string(e.byte));
     } catch (const Json::out_of_range&) {

@@ -109,5 +109,20 @@ TEST_F(JsonViewTest, NumbersStayInRange) {
     expect_failure([&] { (void)JsonView(vector, "v").as_vec3(); }, "v", "single precision");
 }
 
+TEST(ParseJson, ObjectsWithVeryManyMembersAreRefused) {
+    const auto object_of = [](int members) {
+        std::string text = "{";
+        for (int k = 0; k < members; ++k) text += (k > 0 ? ",\"k" : "\"k") + std::to_string(k) + "\":[{}]";
+        return text + "}";
+    };
+    EXPECT_EQ(parse_json(object_of(4096), "test").size(), 4096U);
+    try {
+        parse_json(object_of(4097), "test");
+        FAIL() << "must throw";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::too_large);
+    }
+}
+
 }  // namespace
 }  // namespace afterglow
