@@ -9,8 +9,8 @@
 
 namespace afterglow {
 
-/// Form factors F_ij as sparse rows: row i holds what receiver i sees. Rows need not be sorted by column; a column may
-/// stand in a row more than once (the values then add up). Row sums are at most 1 up to rounding.
+/// Form factors F_ij as sparse rows: row i holds what receiver i sees. Rows need not be sorted by column; a
+/// column may stand in a row more than once (the values then add up). Row sums are at most 1 up to rounding.
 struct FormFactorMatrix {
     std::vector<std::uint64_t> row_begin{0};  ///< size rows + 1
     std::vector<Index> column;                ///< the patch seen
