@@ -24,11 +24,6 @@ if(AFTERGLOW_SANITIZE)
     target_link_options(afterglow_options INTERFACE -fsanitize=${AFTERGLOW_SANITIZE})
 endif()
 
-# Link-time optimisation is for the programs; tests link the same objects without it, several times faster.
-if(CMAKE_INTERPROCEDURAL_OPTIMIZATION AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    target_compile_options(afterglow_options INTERFACE -ffat-lto-objects)
-endif()
-
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
     set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})

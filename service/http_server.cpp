@@ -22,6 +22,8 @@ namespace {
 constexpr int write_timeout_s = 8;
 constexpr int keep_alive_timeout_s = 2;
 constexpr int keep_alive_requests = 1000;
+// What open streams get at a stop to send their last piece; the library would cut them off.
+constexpr std::chrono::seconds stop_grace{2};
 
 /// The library's default also sets SO_REUSEPORT, with which two servers share a port and each gets some of
 /// the requests; here the second one must fail.
@@ -53,8 +55,11 @@ Request to_request(const httplib::Request& from) {
     return request;
 }
 
-httplib::ContentProviderWithoutLength provider_of(std::shared_ptr<ReplyStream> stream) {
-    return [stream = std::move(stream)](std::size_t, httplib::DataSink& sink) {
+/// Held by every open stream, so that its users are the open streams.
+using StreamToken = std::shared_ptr<const char>;
+
+httplib::ContentProviderWithoutLength provider_of(std::shared_ptr<ReplyStream> stream, StreamToken token) {
+    return [stream = std::move(stream), token = std::move(token)](std::size_t, httplib::DataSink& sink) {
         try {
             if (!sink.is_writable()) return false;
             const Piece piece = stream->next();
@@ -67,11 +72,11 @@ httplib::ContentProviderWithoutLength provider_of(std::shared_ptr<ReplyStream> s
     };
 }
 
-void send(Reply reply, httplib::Response& to) {
+void send(Reply reply, const StreamToken& token, httplib::Response& to) {
     to.status = reply.status;
     for (const auto& [name, value] : reply.headers) to.set_header(name, value);
     if (reply.stream) {
-        to.set_chunked_content_provider(reply.content_type, provider_of(std::move(reply.stream)));
+        to.set_chunked_content_provider(reply.content_type, provider_of(std::move(reply.stream), token));
         return;
     }
     if (!reply.content_type.empty()) to.set_header("Content-Type", reply.content_type);
@@ -135,6 +140,9 @@ class HttpServer::Parts {
     }
 
     void stop() {
+        const auto give_up = std::chrono::steady_clock::now() + stop_grace;
+        while (token_.use_count() > 1 && std::chrono::steady_clock::now() < give_up)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
         server_.stop();
         if (listener_.joinable()) listener_.join();
     }
@@ -173,11 +181,11 @@ class HttpServer::Parts {
         server_.set_error_handler([](const httplib::Request&, httplib::Response& response) {
             if (!response.body.empty()) return;
             const std::string detail(title_of(response.status));
-            send(problem_reply({response.status, code_of_status(response.status), detail, ""}), response);
+            send(problem_reply({response.status, code_of_status(response.status), detail, ""}), {}, response);
         });
         server_.set_exception_handler(
             [](const httplib::Request&, httplib::Response& response, const std::exception_ptr& caught) {
-                send(problem_reply(problem_of(caught)), response);
+                send(problem_reply(problem_of(caught)), {}, response);
             });
         if (config_.access_log == AccessLog::on)
             server_.set_logger([](const httplib::Request& request, const httplib::Response& response) {
@@ -193,7 +201,7 @@ class HttpServer::Parts {
     }
 
     void answer(const Request& request, httplib::Response& response) const {
-        send(router_.handle(request), response);
+        send(router_.handle(request), token_, response);
     }
 
     void receive_body(const httplib::Request& from, httplib::Response& response,
@@ -210,7 +218,7 @@ class HttpServer::Parts {
             if (!complete || body.is_too_large()) {
                 const int status = response.status >= 400 ? response.status : 400;
                 send(problem_reply({status, code_of_status(status), "the body could not be taken", "body"}),
-                     response);
+                     {}, response);
                 return;
             }
             request.body = body.take_bytes();
@@ -222,6 +230,7 @@ class HttpServer::Parts {
 
     const Router& router_;
     HttpServerConfig config_;
+    StreamToken token_ = std::make_shared<const char>();
     httplib::Server server_;
     std::thread listener_;
     std::atomic<bool> has_ended_ = false;

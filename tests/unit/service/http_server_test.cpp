@@ -18,6 +18,8 @@
 namespace afterglow {
 namespace {
 
+using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -264,17 +266,34 @@ TEST_F(HttpServerTest, TwoJobsInterleave) {
     EXPECT_GE(changes, 17);
 }
 
-TEST_F(HttpServerTest, StopsWhileStreamsAreOpen) {
+TEST_F(HttpServerTest, OpenStreamsAreToldTheEndAtAStop) {
     solver_.close();
     const std::string id = submit(R"({"frames":"0"})");
-    const Connection stream(port_);
-    ASSERT_TRUE(stream.send("GET /v1/jobs/" + id + "/events HTTP/1.1\r\nHost: x\r\n\r\n"));
-    stream.receive_until("event: snapshot");
+    std::vector<std::unique_ptr<Connection>> streams;
+    for (int i = 0; i < 8; ++i) {
+        streams.push_back(std::make_unique<Connection>(port_));
+        ASSERT_TRUE(streams.back()->send("GET /v1/jobs/" + id + "/events HTTP/1.1\r\nHost: x\r\n\r\n"));
+        streams.back()->receive_until("event: snapshot");
+    }
     solver_.open();
     service_.stop();
     server_.stop();
     EXPECT_FALSE(server_.is_running());
-    EXPECT_THAT(stream.receive_until("event: end"), HasSubstr("event: end"));
+    // The last chunk of a reply that is complete.
+    for (const auto& stream : streams)
+        EXPECT_THAT(stream->receive_until("\r\n0\r\n\r\n"),
+                    AllOf(HasSubstr("event: end"), EndsWith("\r\n0\r\n\r\n")));
+}
+
+TEST_F(HttpServerTest, AStopDoesNotWaitForAReaderThatNeverReads) {
+    solver_.close();
+    const std::string id = submit(R"({"frames":"0"})");
+    const Connection asleep(port_);
+    ASSERT_TRUE(asleep.send("GET /v1/jobs/" + id + "/live HTTP/1.1\r\nHost: x\r\n\r\n"));
+    // Without an end in sight the stream is cut off: the service itself runs on.
+    server_.stop();
+    EXPECT_FALSE(server_.is_running());
+    solver_.open();
 }
 
 }  // namespace
