@@ -40,16 +40,25 @@ LightAtPoint light_at(const Light& light, const Pose& pose, const Vec3& point, c
     return out;
 }
 
-std::vector<Rgb> outside_irradiance(const World& world, double time_s, const PatchMesh& mesh,
-                                    const SightLines& lines, const RayCaster& placed,
-                                    const FormFactors& factors, std::uint64_t& rays_traced,
-                                    const Context& context) {
-    std::vector<Rgb> irradiance(mesh.size());
-    for (Index p = 0; p < mesh.size(); ++p) irradiance[p] = pi * factors.sky[p] * world.background;
-    if (world.lights.empty()) return irradiance;
+std::vector<LightInPlace> lights_at(const World& world, double time_s) {
+    std::vector<LightInPlace> lights;
+    for (const PlacedLight& light : world.lights) lights.push_back({light.light, light.path.at(time_s)});
+    return lights;
+}
 
-    std::vector<Pose> light_poses;
-    for (const PlacedLight& light : world.lights) light_poses.push_back(light.path.at(time_s));
+std::vector<Rgb> sky_irradiance(const World& world, const FormFactors& factors) {
+    std::vector<Rgb> irradiance(factors.sky.size());
+    for (std::size_t p = 0; p < irradiance.size(); ++p)
+        irradiance[p] = pi * factors.sky[p] * world.background;
+    return irradiance;
+}
+
+std::vector<Rgb> light_irradiance(std::span<const LightInPlace> lights, const PatchMesh& mesh,
+                                  const SightLines& lines, const RayCaster& placed,
+                                  const FormFactors& factors, std::uint64_t& rays_traced,
+                                  const Context& context) {
+    std::vector<Rgb> irradiance(mesh.size(), Rgb(0));
+    if (lights.empty()) return irradiance;
     const SobolPoints points(points_per_patch);
     std::atomic<std::uint64_t> traced = 0;
     context.for_chunks(mesh.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -64,9 +73,9 @@ std::vector<Rgb> outside_irradiance(const World& world, double time_s, const Pat
                 PatchPoint at = mesh.point_on(p, sample[0], sample[1]);
                 if (mesh.body[p] != furniture) at = {pose.point(at.position), pose.direction(at.normal)};
                 const Vec3 origin = at.position + lines.lift_m() * at.normal;
-                for (std::size_t l = 0; l < world.lights.size(); ++l) {
+                for (const LightInPlace& placed_light : lights) {
                     const LightAtPoint light =
-                        light_at(world.lights[l].light, light_poses[l], origin, at.normal);
+                        light_at(placed_light.light, placed_light.pose, origin, at.normal);
                     if (max_channel(light.irradiance) <= 0) continue;
                     ++count;
                     if (!placed.occluded({origin, light.direction, light.distance_m}, Scope::everything))

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "solver/formfactor/rows.h"
@@ -7,13 +9,23 @@
 
 namespace afterglow {
 
-/// Irradiance of all patches, W/m², from what has no patches: the uniform background (by each patch's share
-/// of sky) and the lights without a surface at `time_s`, from several points of each patch with shadow rays
-/// against everything the caster has placed. Adds the number of rays to `rays_traced`. Errors: cancelled.
-std::vector<Rgb> outside_irradiance(const World& world, double time_s, const PatchMesh& mesh,
-                                    const SightLines& lines, const RayCaster& placed,
-                                    const FormFactors& factors, std::uint64_t& rays_traced,
-                                    const Context& context);
+/// A light without surface, and where it is at one time.
+struct LightInPlace {
+    Light light;
+    Pose pose;
+};
+std::vector<LightInPlace> lights_at(const World& world, double time_s);
+
+/// Irradiance of all patches, W/m², from the uniform background, by each patch's share of sky.
+std::vector<Rgb> sky_irradiance(const World& world, const FormFactors& factors);
+
+/// Irradiance of all patches, W/m², from lights without a surface, by several points of each patch with
+/// shadow rays against everything the caster has placed. Adds the number of rays to `rays_traced`. Errors:
+/// cancelled.
+std::vector<Rgb> light_irradiance(std::span<const LightInPlace> lights, const PatchMesh& mesh,
+                                  const SightLines& lines, const RayCaster& placed,
+                                  const FormFactors& factors, std::uint64_t& rays_traced,
+                                  const Context& context);
 
 /// Irradiance that a light without surface gives a point if nothing stands between, and the way to it.
 struct LightAtPoint {

@@ -5,7 +5,9 @@
 
 #include "solver/base/context.h"
 #include "solver/base/pixels.h"
+#include "solver/formfactor/outside_light.h"
 #include "solver/image/camera.h"
+#include "solver/image/direct_light.h"
 #include "solver/mesh/interpolation.h"
 
 namespace afterglow {
@@ -17,18 +19,24 @@ struct LitWorld {
     const Interpolation* interpolation = nullptr;
     const RayCaster* caster = nullptr;    ///< with the bodies where they stand
     std::span<const Material> materials;  ///< as they are at this time
-    std::span<const Rgb> irradiance;      ///< by patch, W/m²
-    std::span<const float> confidence;    ///< by patch: share of its lines that were of use
+    /// By patch, W/m², interpolated: all of it, or what `direct` and `lights` do not bring.
+    std::span<const Rgb> irradiance;
+    std::span<const float> confidence;  ///< by patch: share of its lines that were of use
+    /// Lamps whose light is taken point by point, with shadows as sharp as they are; null: none.
+    const DirectLight* direct = nullptr;
+    std::span<const LightInPlace> lights;  ///< likewise, lights without a surface
+    float lift_m = 0;                      ///< of shadow rays off their surface
 };
 
 struct PictureConfig {
-    int samples_per_pixel = 4;  ///< camera rays a pixel, box-filtered
-    std::uint64_t seed = 1;     ///< of the places of the samples within pixels
+    int samples_per_pixel = 4;        ///< camera rays a pixel, box-filtered
+    int light_samples_per_point = 4;  ///< shadow rays to lamps from what each camera ray meets
+    std::uint64_t seed = 1;           ///< of the places of the samples within pixels and on lamps
 };
 
 /// Radiance seen by a camera: what a surface emits, and its reflectance at the point (texture included) times
-/// the interpolated irradiance over π. Adds the number of rays to `rays_traced`. Same bits for any number of
-/// threads. Errors: cancelled.
+/// the irradiance over π. Adds the number of rays to `rays_traced`. Same bits for any number of threads.
+/// Errors: cancelled.
 Picture render_picture(const CameraView& view, const LitWorld& lit, const PictureConfig& config,
                        std::uint64_t& rays_traced, const Context& context);
 

@@ -1,6 +1,5 @@
 #include "solver/sequence/frame_refinement.h"
 
-#include "solver/formfactor/outside_light.h"
 #include "solver/radiosity/ambient.h"
 #include "solver/sequence/prepare.h"
 #include "solver/sequence/stopwatch.h"
@@ -9,22 +8,23 @@ namespace afterglow {
 
 namespace {
 
-int samples_of(Quality quality) {
+/// What a quality stands for.
+PictureConfig samples_of(Quality quality, std::uint64_t seed) {
     switch (quality) {
         case Quality::draft:
-            return 1;
+            return {1, 4, seed};
         case Quality::preview:
-            return 4;
+            return {4, 4, seed};
         case Quality::final:
-            return 16;
+            return {16, 4, seed};
     }
-    return 1;
+    return {};
 }
 
 }  // namespace
 
 FrameRefinement::FrameRefinement(SequenceState::Parts& parts, double time_s)
-    : parts_(parts), time_s_(time_s) {
+    : parts_(parts), time_s_(time_s), lights_(lights_at(parts.world, time_s)) {
     parts.caster.set_poses(poses_at(parts.world, time_s));
     for (Index m = 0; m < parts.world.materials.size(); ++m)
         materials_.push_back(material_at(parts.world, m, time_s));
@@ -57,8 +57,10 @@ void FrameRefinement::compile(const Context& context) {
     factors_ =
         compile_rows(parts_.mesh, *parts_.sight, *parts_.light, parts_.lamps, parts_.caster, seen, context);
     columns_ = columns_of(factors_.matrix, context);
-    outside_ = outside_irradiance(parts_.world, time_s_, parts_.mesh, *parts_.sight, parts_.caster, factors_,
-                                  statistics_.rays_traced, context);
+    from_lights_ = light_irradiance(lights_, parts_.mesh, *parts_.sight, parts_.caster, factors_,
+                                    statistics_.rays_traced, context);
+    outside_ = sky_irradiance(parts_.world, factors_);
+    for (std::size_t p = 0; p < outside_.size(); ++p) outside_[p] += from_lights_[p];
     statistics_.visibility += watch.elapsed();
 }
 
@@ -83,25 +85,54 @@ void FrameRefinement::solve(double asked_error, const Context& context) {
     statistics_.solve += watch.elapsed();
 }
 
-Picture FrameRefinement::picture(int width, int height, int samples, std::span<const Rgb> irradiance,
+/// The part of the solution that a picture does not take point by point.
+std::vector<Rgb> FrameRefinement::indirect_irradiance() const {
+    std::vector<Rgb> indirect = light_->irradiance;
+    for (std::size_t p = 0; p < indirect.size(); ++p) indirect[p] -= from_lights_[p];
+    for (const Index lamp : parts_.lamps.patches)
+        for (std::uint64_t k = columns_.column_begin[lamp]; k < columns_.column_begin[lamp + 1]; ++k)
+            indirect[columns_.row[k]] -= columns_.value[k] * emission_[lamp];
+    // Both are sums of the same terms in another order: what rounding leaves below zero is zero.
+    for (Rgb& value : indirect) value = glm::max(value, Rgb(0));
+    return indirect;
+}
+
+LitWorld FrameRefinement::lit_by(std::span<const Rgb> irradiance) const {
+    LitWorld lit;
+    lit.world = &parts_.world;
+    lit.mesh = &parts_.mesh;
+    lit.interpolation = &*parts_.interpolation;
+    lit.caster = &parts_.caster;
+    lit.materials = materials_;
+    lit.irradiance = irradiance;
+    lit.confidence = factors_.valid_share;
+    lit.lift_m = parts_.sight->lift_m();
+    return lit;
+}
+
+Picture FrameRefinement::picture(int width, int height, const LitWorld& lit, const PictureConfig& config,
                                  const Context& context) {
     const Stopwatch watch;
     context.report(0.8, "rendering the picture");
-    const LitWorld lit{&parts_.world, &parts_.mesh, &*parts_.interpolation, &parts_.caster,
-                       materials_,    irradiance,   factors_.valid_share};
     const CameraView view = view_at(parts_.camera, time_s_, width, height);
-    Picture made = render_picture(view, lit, {samples, parts_.config.seed}, statistics_.rays_traced, context);
+    Picture made = render_picture(view, lit, config, statistics_.rays_traced, context);
     statistics_.image += watch.elapsed();
     return made;
 }
 
 Picture FrameRefinement::preliminary_picture(int width, int height, const Context& context) {
-    return picture(width, height, 1, irradiance_with_ambient(problem(), *light_), context);
+    const auto irradiance = irradiance_with_ambient(problem(), *light_);
+    return picture(width, height, lit_by(irradiance), {1, 0, parts_.config.seed}, context);
 }
 
 Picture FrameRefinement::final_picture(const Context& context) {
-    return picture(parts_.config.width, parts_.config.height, samples_of(parts_.config.quality),
-                   light_->irradiance, context);
+    const auto indirect = indirect_irradiance();
+    const DirectLight direct(parts_.mesh, parts_.lamps, parts_.caster, emission_);
+    LitWorld lit = lit_by(indirect);
+    lit.direct = &direct;
+    lit.lights = lights_;
+    return picture(parts_.config.width, parts_.config.height, lit,
+                   samples_of(parts_.config.quality, parts_.config.seed), context);
 }
 
 }  // namespace afterglow

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "solver/formfactor/outside_light.h"
 #include "solver/radiosity/progressive.h"
 #include "solver/sequence/parts.h"
 
@@ -23,18 +24,25 @@ class FrameRefinement {
     Picture final_picture(const Context& context);
 
     [[nodiscard]] const Certificate& certificate() const { return certificate_; }
+    /// Of the latest `solve`.
+    [[nodiscard]] ProgressiveStatus status() const { return light_->status; }
     [[nodiscard]] const FrameStatistics& statistics() const { return statistics_; }
 
   private:
     void compile(const Context& context);
     [[nodiscard]] RadiosityProblem problem() const;
-    Picture picture(int width, int height, int samples, std::span<const Rgb> irradiance,
+    [[nodiscard]] std::vector<Rgb> indirect_irradiance() const;
+    [[nodiscard]] LitWorld lit_by(std::span<const Rgb> irradiance) const;
+    Picture picture(int width, int height, const LitWorld& lit, const PictureConfig& config,
                     const Context& context);
 
     SequenceState::Parts& parts_;
     double time_s_;
+    std::vector<LightInPlace> lights_;
     std::vector<Material> materials_;
-    std::vector<Rgb> emission_, reflectance_, outside_;
+    std::vector<Rgb> emission_, reflectance_;
+    std::vector<Rgb> from_lights_;  ///< irradiance by the lights without a surface
+    std::vector<Rgb> outside_;      ///< and by the sky
     Index directions_ = 0;
     FormFactors factors_;
     FormFactorColumns columns_;

@@ -32,6 +32,7 @@ struct SequenceState::Parts {
     std::optional<float> exposure_ev;   ///< set once, for all frames
     SequenceStatistics statistics;
     Warnings warnings;
+    bool warned_of_exhaustion = false;  ///< one such warning a job is enough
 
     Parts(World world_in, const SequenceConfig& config_in)
         : world(std::move(world_in)), config(config_in), caster(world) {}

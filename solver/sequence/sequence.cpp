@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "solver/image/tone_map.h"
@@ -81,6 +84,16 @@ std::vector<Index> preliminary_looks(const SequenceState::Parts& parts) {
     return looks;
 }
 
+/// Says once in a job that the asked error is out of reach, and how near its frames came.
+void warn_of_exhaustion(SequenceState::Parts& parts, const FrameRefinement& frame, int frame_number) {
+    if (frame.status() != ProgressiveStatus::exhausted || parts.warned_of_exhaustion) return;
+    parts.warned_of_exhaustion = true;
+    std::ostringstream bound;
+    bound << std::setprecision(2) << frame.certificate().error_bound;
+    parts.warnings.push_back({"error", "is finer than single precision can certify: frame " +
+                                           std::to_string(frame_number) + " ends within " + bound.str()});
+}
+
 std::uint64_t count_changes(const std::vector<Index>& now, const std::vector<Index>& before) {
     if (before.empty()) return 0;
     std::uint64_t changes = 0;
@@ -137,6 +150,7 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     const Context last = context.part(0.6, 1);
     frame.look(all, *parts.strategy, last);
     frame.solve(parts.config.asked_error, last);
+    warn_of_exhaustion(parts, frame, frame_number);
     Picture picture = frame.final_picture(last);
     publisher.publish(std::move(picture), frame.certificate().residual, true);
 

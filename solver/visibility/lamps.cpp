@@ -15,9 +15,14 @@ bool is_emitter(const World& world, const PatchMesh& mesh, Index patch) {
 
 Lamps find_lamps(const World& world, const PatchMesh& mesh, const LampConfig& config) {
     const float total = std::accumulate(mesh.area_m2.begin(), mesh.area_m2.end(), 0.0F);
+    const auto emission_of = [&](Index p) { return max_channel(world.materials[mesh.material(p)].emission); };
     std::map<std::pair<Index, Side>, std::vector<Index>> sides;
-    for (Index p = 0; p < mesh.size(); ++p)
-        if (is_emitter(world, mesh, p)) sides[{mesh.surface[p], mesh.side[p]}].push_back(p);
+    float power = 0;
+    for (Index p = 0; p < mesh.size(); ++p) {
+        if (!is_emitter(world, mesh, p)) continue;
+        sides[{mesh.surface[p], mesh.side[p]}].push_back(p);
+        power += mesh.area_m2[p] * emission_of(p);
+    }
 
     Lamps out;
     out.lamp_of_patch.assign(mesh.size(), no_index);
@@ -32,6 +37,7 @@ Lamps find_lamps(const World& world, const PatchMesh& mesh, const LampConfig& co
             box.add(mesh.centre[p] + Vec3(reach));
         }
         if (lamp.area_m2 > config.largest_share * total) continue;
+        if (emission_of(patches.front()) * total < config.least_contrast * power) continue;
         lamp.centre = box.centre();
         lamp.radius_m = 0.5F * glm::length(box.extent());
         for (const Index p : patches) {
@@ -42,9 +48,7 @@ Lamps find_lamps(const World& world, const PatchMesh& mesh, const LampConfig& co
         out.list.push_back(std::move(lamp));
     }
     float sum = 0;
-    for (const Index p : out.patches)
-        out.cumulative_power.push_back(sum += mesh.area_m2[p] *
-                                              max_channel(world.materials[mesh.material(p)].emission));
+    for (const Index p : out.patches) out.cumulative_power.push_back(sum += mesh.area_m2[p] * emission_of(p));
     for (float& share : out.cumulative_power) share /= sum;
     if (!out.cumulative_power.empty()) out.cumulative_power.back() = 1;
     return out;

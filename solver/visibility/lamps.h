@@ -27,6 +27,9 @@ struct Lamps {
 struct LampConfig {
     /// A shining surface larger than this share of all patches is met often enough by ordinary lines.
     float largest_share = 0.1F;
+    /// So is one whose emission is less than this many times the mean over all patches: where everything
+    /// shines, nothing is a lamp.
+    float least_contrast = 4;
     /// A lamp whose solid angle as seen from a patch is more than this share of the hemisphere is sampled by
     /// ordinary lines there.
     float near_share = 0.3F;

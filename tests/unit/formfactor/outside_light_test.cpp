@@ -50,7 +50,7 @@ TEST(LightAt, ADirectionalLightDoesNotFallOff) {
     EXPECT_NEAR(light_at(light, down, Vec3(0, -100, 0), Vec3(0, 1, 0)).irradiance.x, 10, 1e-4);
 }
 
-TEST(OutsideIrradiance, BackgroundAndShadowedLight) {
+TEST(OutsideLight, BackgroundAndShadowedLight) {
     World world = testing::empty_world();
     world.background = Rgb(0.5F);
     add_quad(world.bodies[furniture], Vec3(0), Vec3(0, 0, 1), Vec3(1, 0, 0), 0);
@@ -65,13 +65,16 @@ TEST(OutsideIrradiance, BackgroundAndShadowedLight) {
     const FormFactors factors = compile_rows(lined.mesh, lined.sight, lined.light, lined.lamps, lined.caster,
                                              {visible.patch, 16, {}}, Context(1));
     std::uint64_t rays = 0;
-    const auto irradiance =
-        outside_irradiance(lined.world, 0, lined.mesh, lined.sight, lined.caster, factors, rays, Context(1));
-    ASSERT_EQ(irradiance.size(), 2U);
-    // Above: the sky and the light (about 10 / 4 W/m², a little less towards the corners). Below: the sky
-    // alone.
-    EXPECT_NEAR(irradiance[0].x, pi * 0.5 + 2.4, 0.15);
-    EXPECT_NEAR(irradiance[1].x, pi * 0.5, 1e-5);
+    const auto sky = sky_irradiance(lined.world, factors);
+    const auto lit = light_irradiance(lights_at(lined.world, 0), lined.mesh, lined.sight, lined.caster,
+                                        factors, rays, Context(1));
+    ASSERT_EQ(sky.size(), 2U);
+    ASSERT_EQ(lit.size(), 2U);
+    EXPECT_NEAR(sky[0].x, pi * 0.5, 1e-5);
+    EXPECT_NEAR(sky[1].x, pi * 0.5, 1e-5);
+    // Above about 10 / 4 W/m², a little less towards the corners; below nothing.
+    EXPECT_NEAR(lit[0].x, 2.4, 0.15);
+    EXPECT_EQ(lit[1].x, 0);
     EXPECT_EQ(rays, 8U);
 }
 

@@ -62,6 +62,18 @@ TEST(Sequence, AFurnaceIsUniformWhateverTheActorsDo) {
     }
 }
 
+TEST(Sequence, AnErrorThatCannotBeCertifiedIsAWarning) {
+    SequenceConfig config = quick();
+    config.asked_error = 1e-9;
+    SequenceState state = make_state(small_room(), config, Context(2));
+    const FrameStatistics frame = step(state, 0, {}, Context(2));
+    step(state, 1, {}, Context(2));
+    EXPECT_GT(frame.error_bound, config.asked_error);
+    EXPECT_LT(frame.error_bound, 1e-3);
+    ASSERT_EQ(state.warnings().size(), 1U);
+    EXPECT_EQ(state.warnings().front().place, "error");
+}
+
 TEST(Sequence, TheFirstFrameRefinesBeforeItIsFinal) {
     const auto revisions = revisions_of(small_room(), quick(), 0, 1);
     std::vector<int> count(2);

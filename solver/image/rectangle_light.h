@@ -1,0 +1,26 @@
+#pragma once
+
+#include "solver/base/math.h"
+
+namespace afterglow {
+
+/// A flat rectangle that shines on the side of edge_u × edge_v.
+struct RectangleLight {
+    Vec3 corner{0};
+    Vec3 edge_u{0}, edge_v{0};  ///< metres, at right angles
+};
+
+/// A point of a rectangle as seen from somewhere.
+struct RectanglePoint {
+    Vec3 position{0};
+    float solid_angle = 0;  ///< what the point stands for, steradians; 0 from behind or edge-on
+};
+
+/// A point of a rectangle for (s, t) in [0,1)²: uniform in solid angle where the rectangle is near (then
+/// `solid_angle` is the whole rectangle's), uniform in area where it is so far that the two hardly differ
+/// (then it is area · cosine / distance²). Either way the mean of f · solid_angle is the integral of f over
+/// the rectangle's solid angle. Source: Ureña, Fajardo and King 2013, "An area-preserving parametrization for
+/// spherical rectangles". Thread-safety: pure.
+RectanglePoint point_seen(const RectangleLight& light, const Vec3& from, float s, float t);
+
+}  // namespace afterglow
