@@ -55,6 +55,12 @@ std::uint64_t mixed(std::uint64_t value) {
     return value ^ (value >> 31U);
 }
 
+float RandomStream::next() {
+    const std::uint64_t value = mixed(state_);
+    state_ += 0x9e3779b97f4a7c15U;
+    return static_cast<float>(value >> 40U) * 0x1p-24F;
+}
+
 SobolPoints::SobolPoints(std::size_t count) : points_(count) {
     const std::array dimensions{direction_numbers(0, 0, {}), direction_numbers(1, 0, {1}),
                                 direction_numbers(2, 1, {1, 3}), direction_numbers(3, 1, {1, 3, 1})};

@@ -14,6 +14,18 @@ inline std::uint64_t mixed(std::uint64_t seed, std::uint64_t value) {
     return mixed(seed ^ mixed(value));
 }
 
+/// Independent numbers, uniform in [0,1) with 24 bits, one after the other (splitmix64). Purpose: estimates
+/// whose noise is itself measured from their samples; Sobol points are less noisy but not independent.
+/// Streams of different well-mixed seeds are independent of each other. One thread at a time.
+class RandomStream {
+  public:
+    explicit RandomStream(std::uint64_t seed) : state_(seed) {}
+    float next();
+
+  private:
+    std::uint64_t state_;
+};
+
 /// A four-dimensional low-discrepancy point in [0,1)⁴.
 using Sample4 = std::array<float, 4>;
 

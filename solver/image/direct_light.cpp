@@ -29,10 +29,13 @@ std::optional<RectangleLight> rectangle_of(const PatchMesh& mesh, const Lamp& la
 
 DirectLight::DirectLight(const PatchMesh& mesh, const Lamps& lamps, const RayCaster& placed,
                          std::span<const Rgb> emission)
-    : mesh_(&mesh) {
+    : mesh_(&mesh), covered_(mesh.surfaces.list.size(), {false, false}) {
     for (const Lamp& lamp : lamps.list) {
+        // A lamp is all patches of one side of a surface.
+        const Index first = lamp.patches.front();
+        covered_[mesh.surface[first]][static_cast<std::size_t>(mesh.side[first])] = true;
         Emitter emitter;
-        emitter.emission = emission[lamp.patches.front()];
+        emitter.emission = emission[first];
         if (max_channel(emitter.emission) <= 0) continue;
         emitter.pose = placed.pose(lamp.body);
         emitter.centre = emitter.pose.point(lamp.centre);
@@ -51,6 +54,11 @@ DirectLight::DirectLight(const PatchMesh& mesh, const Lamps& lamps, const RayCas
         }
         emitters_.push_back(std::move(emitter));
     }
+}
+
+bool DirectLight::covers(const Hit& hit) const {
+    const Index surface = mesh_->surfaces.of_triangle[hit.body][hit.triangle];
+    return covered_[surface][static_cast<std::size_t>(hit.side)];
 }
 
 float DirectLight::bound(const Emitter& emitter, const Vec3& point, const Vec3& normal) {

@@ -30,6 +30,10 @@ class DirectLight {
     /// Whether no lamp is on.
     [[nodiscard]] bool empty() const { return emitters_.empty(); }
 
+    /// Whether what a ray met belongs to one of the lamps: its light comes by `sample`, so whoever takes both
+    /// must not count it again.
+    [[nodiscard]] bool covers(const Hit& hit) const;
+
     /// Seen from a point of a surface with a unit normal. `choice`, `s` and `t` in [0,1).
     [[nodiscard]] LightSample sample(const Vec3& point, const Vec3& normal, float choice, float s,
                                      float t) const;
@@ -57,6 +61,7 @@ class DirectLight {
 
     const PatchMesh* mesh_;
     std::vector<Emitter> emitters_;
+    SideMask covered_;  // sides of surfaces that are lamps
 };
 
 }  // namespace afterglow

@@ -5,21 +5,13 @@
 #include <atomic>
 
 #include "solver/base/sampling.h"
+#include "solver/image/surface_light.h"
 
 namespace afterglow {
 
 namespace {
 
 constexpr std::size_t lanes = 16;
-
-Rgb reflectance_at(const LitWorld& lit, const Hit& hit, const Material& material) {
-    if (material.texture == no_index) return material.reflectance;
-    const Body& body = lit.world->bodies[hit.body];
-    const auto& v = body.triangles[hit.triangle].vertices;
-    const Vec2 uv = (1 - hit.u - hit.v) * body.texture_coordinates[v[0]] +
-                    hit.u * body.texture_coordinates[v[1]] + hit.v * body.texture_coordinates[v[2]];
-    return material.reflectance * lit.world->textures[material.texture].at(uv);
-}
 
 /// What a camera ray meets, as far as light is concerned.
 struct SeenPoint {
@@ -38,9 +30,8 @@ SeenPoint look_at(const LitWorld& lit, const Ray& ray, const Hit& hit) {
     const Body& body = lit.world->bodies[hit.body];
     const Triangle& triangle = body.triangles[hit.triangle];
     const Material& material = lit.materials[triangle.material];
-    if (hit.side == Side::front || material.shines == Material::Shines::both)
-        seen.radiance = material.emission;
-    seen.reflectance = reflectance_at(lit, hit, material);
+    seen.radiance = emitted_by(material, hit.side);
+    seen.reflectance = reflectance_at(*lit.world, material, hit);
     if (max_channel(seen.reflectance) <= 0) return seen;
 
     const Pose& pose = lit.caster->pose(hit.body);
@@ -49,9 +40,7 @@ SeenPoint look_at(const LitWorld& lit, const Ray& ray, const Hit& hit) {
     const Stencil stencil = lit.interpolation->at(hit.body, hit.triangle, hit.side, in_body);
     seen.radiance += seen.reflectance / pi * Interpolation::value(stencil, lit.irradiance, lit.confidence);
 
-    const Vec3 front = glm::normalize(doubled_area_normal(body, hit.triangle));
-    const Vec3 normal = hit.side == Side::front ? front : -front;
-    seen.normal = hit.body == furniture ? normal : pose.direction(normal);
+    seen.normal = normal_at(*lit.world, *lit.caster, hit);
     seen.position = at + lit.lift_m * seen.normal;
     return seen;
 }

@@ -51,5 +51,30 @@ TEST(CosineDirection, IsUnitAboveTheHorizonWithMeanCosineTwoThirds) {
     EXPECT_NEAR(mean, 2.0 / 3, 1e-3);
 }
 
+TEST(RandomStream, IsUniformAndItsNeighboursAreIndependent) {
+    constexpr int count = 100000;
+    double sum = 0, squares = 0, products = 0, across = 0;
+    RandomStream stream(mixed(5)), other(mixed(6));
+    double before = 0.5;
+    for (int k = 0; k < count; ++k) {
+        const double x = stream.next();
+        ASSERT_GE(x, 0);
+        ASSERT_LT(x, 1);
+        sum += x - 0.5;
+        squares += (x - 0.5) * (x - 0.5);
+        products += (x - 0.5) * (before - 0.5);
+        across += (x - 0.5) * (other.next() - 0.5);
+        before = x;
+    }
+    // Three standard errors: the variance of a uniform number is 1/12, of its square 1/180, of a product
+    // 1/144.
+    const double three = 3 / std::sqrt(count);
+    EXPECT_NEAR(sum / count, 0, three / std::sqrt(12.0));
+    EXPECT_NEAR(squares / count, 1 / 12.0, three / std::sqrt(180.0));
+    EXPECT_NEAR(products / count, 0, three / 12);
+    EXPECT_NEAR(across / count, 0, three / 12);
+    EXPECT_EQ(RandomStream(3).next(), RandomStream(3).next());
+}
+
 }  // namespace
 }  // namespace afterglow
