@@ -75,6 +75,13 @@ void to_embree(const RayPacket& in, RTCRay16& out, std::array<int, 16>& valid) {
     std::memcpy(out.dir_y, in.direction_y.data(), sizeof(out.dir_y));
     std::memcpy(out.dir_z, in.direction_z.data(), sizeof(out.dir_z));
     std::memcpy(out.tfar, in.far.data(), sizeof(out.tfar));
+    // Embree computes with the lanes that are switched off, too: what happened to lie in memory there,
+    // denormal numbers above all, made it fifteen times slower.
+    for (std::size_t k = in.count; k < 16; ++k) {
+        out.org_x[k] = out.org_y[k] = out.org_z[k] = 0;
+        out.dir_x[k] = out.dir_y[k] = out.dir_z[k] = 1;
+        out.tfar[k] = 0;
+    }
     for (std::size_t k = 0; k < 16; ++k) {
         // A ray that ends where it starts can meet nothing.
         valid[k] = k < in.count && in.far[k] > 0 ? -1 : 0;
