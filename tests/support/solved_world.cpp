@@ -1,0 +1,87 @@
+#include "tests/support/solved_world.h"
+
+#include "solver/visibility/reach.h"
+
+namespace afterglow::testing {
+
+namespace {
+
+PatchMesh mesh_reached(const World& world, RayCaster& caster, float size) {
+    Surfaces surfaces = find_surfaces(world, {.facet_size_m = size});
+    ReachConfig reach;
+    reach.spacing_m = size;
+    const SideMask reached = reachable_sides(world, surfaces, caster, reach, Context(1));
+    return make_patches(world, std::move(surfaces), reached, {.patch_size_m = size});
+}
+
+}  // namespace
+
+SolvedWorld::SolvedWorld(World w, const SolvedWorldConfig& c)
+    : config(c),
+      world(std::move(w)),
+      caster(world),
+      mesh(mesh_reached(world, caster, c.patch_size_m)),
+      lamps(find_lamps(world, mesh)),
+      sight(mesh, world, c.lines, c.seed),
+      light(mesh, sight, lamps, c.light_lines, mixed(c.seed)),
+      visible(make_visible_lines(mesh, sight, light)),
+      background_(make_static_lines(mesh, sight, light)),
+      strategy_(c.visibility == Visibility::retrace ? make_retrace() : make_back_buffer()) {
+    if (strategy_->needs_background())
+        extend_static_lines(background_, mesh, sight, light, caster, c.lines, Context(1));
+}
+
+void SolvedWorld::look(double time_s) {
+    const Context context(1);
+    caster.set_poses(poses_at(world, time_s));
+    strategy_->update({mesh, sight, light, caster, background_}, {0, config.lines}, visible, context);
+    factors = compile_rows(mesh, sight, light, lamps, caster,
+                           {visible.patch, config.lines, visible.light_contribution}, context);
+    lights = lights_at(world, time_s);
+    materials.clear();
+    emission.clear();
+    reflectance.clear();
+    for (Index m = 0; m < world.materials.size(); ++m) materials.push_back(material_at(world, m, time_s));
+    for (Index p = 0; p < mesh.size(); ++p) {
+        const Material& material = materials[mesh.material(p)];
+        emission.push_back(is_emitter(world, mesh, p) ? pi * material.emission : Rgb(0));
+        reflectance.push_back(material.reflectance * mesh.texture_mean[p]);
+    }
+}
+
+void SolvedWorld::solve(double time_s) {
+    look(time_s);
+    const Context context(1);
+    std::uint64_t rays = 0;
+    from_lights = light_irradiance(lights, mesh, sight, caster, factors, rays, context);
+    external = sky_irradiance(world, factors);
+    for (std::size_t p = 0; p < external.size(); ++p) external[p] += from_lights[p];
+    ProgressiveConfig progressive;
+    progressive.asked_error = config.asked_error;
+    solution = solve_progressive(problem(), columns_of(factors.matrix, context), progressive, context);
+}
+
+RadiosityProblem SolvedWorld::problem() const {
+    return {factors.matrix, mesh.area_m2, emission, reflectance, external};
+}
+
+Rgb SolvedWorld::radiosity(Index patch) const {
+    return emission[patch] + reflectance[patch] * solution.state.irradiance[patch];
+}
+
+double SolvedWorld::factor_to_surface(Index patch, Index surface) const {
+    double sum = 0;
+    const FormFactorMatrix& matrix = factors.matrix;
+    for (auto e = matrix.row_begin[patch]; e < matrix.row_begin[patch + 1]; ++e)
+        if (mesh.surface[matrix.column[e]] == surface) sum += static_cast<double>(matrix.value[e]);
+    return sum;
+}
+
+std::vector<Index> SolvedWorld::patches_of(Index surface, Side side) const {
+    std::vector<Index> out;
+    for (Index p = 0; p < mesh.size(); ++p)
+        if (mesh.surface[p] == surface && mesh.side[p] == side) out.push_back(p);
+    return out;
+}
+
+}  // namespace afterglow::testing
