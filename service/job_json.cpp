@@ -70,7 +70,7 @@ Json to_json(const JobSettings& settings) {
     json["method"] = method_json(config);
     json["visibility"] = name_of(config.visibility);
     json["solution"] = name_of(config.solution);
-    json["rays"] = config.rays_per_patch;
+    json["rays"] = or_null(config.rays_per_patch);
     json["patch_size_m"] = or_null(config.patch_size_m);
     json["error"] = config.asked_error;
     json["camera"] = config.camera.empty() ? Json(nullptr) : Json(config.camera);

@@ -29,14 +29,17 @@ struct LitWorld {
 };
 
 struct PictureConfig {
-    int samples_per_pixel = 4;        ///< camera rays a pixel, box-filtered
-    int light_samples_per_point = 4;  ///< shadow rays to lamps from what each camera ray meets
-    std::uint64_t seed = 1;           ///< of the places of the samples within pixels and on lamps
+    int samples_per_pixel = 4;        ///< camera rays of every pixel, 1 or more, box-filtered
+    int most_samples_per_pixel = 32;  ///< of pixels whose first samples meet several surfaces or disagree
+    int light_samples_per_point = 2;  ///< shadow rays to lamps from what each camera ray meets
+    /// Standard error of a pixel's first samples, relative to its mean, above which it gets the most samples.
+    float noise = 0.03F;
+    std::uint64_t seed = 1;  ///< of the places of the samples within pixels and on lamps
 };
 
 /// Radiance seen by a camera: what a surface emits, and its reflectance at the point (texture included) times
-/// the irradiance over π. Adds the number of rays to `rays_traced`. Same bits for any number of threads.
-/// Errors: cancelled.
+/// the irradiance over π. Pixels that need them get more samples than the others (Mitchell 1987). Adds the
+/// number of rays to `rays_traced`. Same bits for any number of threads. Errors: cancelled.
 Picture render_picture(const CameraView& view, const LitWorld& lit, const PictureConfig& config,
                        std::uint64_t& rays_traced, const Context& context);
 

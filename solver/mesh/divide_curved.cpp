@@ -18,7 +18,7 @@ Box bounds_of(const Body& body, Index t) {
 }
 
 PatchShape make_shape(const World& world, const Body& body, const Surface& surface,
-                      std::vector<Index> triangles) {
+                      const std::vector<Index>& triangles) {
     PatchShape shape;
     const Index texture = world.materials[surface.material].texture;
     Rgb colour(0);
@@ -42,7 +42,6 @@ PatchShape make_shape(const World& world, const Body& body, const Surface& surfa
     if (texture != no_index) shape.texture_mean = colour / shape.area_m2;
     for (auto& fragment : shape.fragments) fragment.cumulative_share /= shape.area_m2;
     shape.fragments.back().cumulative_share = 1;
-    shape.triangles = std::move(triangles);
     return shape;
 }
 
@@ -79,7 +78,8 @@ SurfaceShapes divide_curved(const World& world, const Surface& surface, float si
             for (std::size_t k = adjacency.begin[t]; k < adjacency.begin[t + 1]; ++k)
                 if (taken[adjacency.neighbour[k]] == 0) queue.push_back(adjacency.neighbour[k]);
         }
-        out.shapes.push_back(make_shape(world, body, surface, std::move(members)));
+        out.shapes.push_back(make_shape(world, body, surface, members));
+        out.triangles.push_back(std::move(members));
     }
     return out;
 }

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "solver/base/error.h"
+#include "solver/mesh/clip.h"
 #include "solver/mesh/patch_shape.h"
 
 namespace afterglow {
@@ -13,37 +14,6 @@ namespace {
 constexpr double max_cells = 4e6;
 constexpr float whole_cell_share = 0.9999F;  // covered by this much, a cell counts as a whole rectangle
 constexpr float sliver_share = 1e-5F;        // below it, the neighbouring cell answers for the sliver
-
-/// A corner of a clipped triangle: where in the grid, and how far from the triangle's own corners.
-struct Corner {
-    Vec2 cell;         // cell coordinates
-    Vec3 barycentric;  // of the triangle
-};
-/// A triangle clipped by four lines has at most seven corners.
-struct Polygon {
-    std::array<Corner, 8> corners;
-    int count = 0;
-
-    void add(const Corner& c) { corners[static_cast<std::size_t>(count++)] = c; }
-    [[nodiscard]] const Corner& operator[](int i) const { return corners[static_cast<std::size_t>(i)]; }
-};
-
-/// Keeps the part where sign · (coordinate − bound) ≥ 0 (Sutherland and Hodgman 1974).
-Polygon clip(const Polygon& in, int axis, float bound, float sign) {
-    Polygon out;
-    for (int i = 0; i < in.count; ++i) {
-        const Corner& a = in[i];
-        const Corner& b = in[(i + 1) % in.count];
-        const float da = sign * (a.cell[axis] - bound);
-        const float db = sign * (b.cell[axis] - bound);
-        if (da >= 0) out.add(a);
-        if ((da > 0 && db < 0) || (da < 0 && db > 0)) {
-            const float t = da / (da - db);
-            out.add({glm::mix(a.cell, b.cell, t), glm::mix(a.barycentric, b.barycentric, t)});
-        }
-    }
-    return out;
-}
 
 /// Along the longest border edge of the surface, so that rectangles fall into whole cells.
 Vec3 main_direction(const Body& body, const Surface& surface) {
@@ -108,34 +78,55 @@ PlaneGrid lay_grid(const Body& body, const Surface& surface, float size_m) {
     return out;
 }
 
-/// What lies in one cell.
-struct CellContent {
-    float area = 0;  // in cells
-    Vec2 moment{0};  // area × centroid, cell coordinates
-    Rgb colour{0};   // area × texture colour
-    std::vector<std::array<Vec2, 3>> pieces;
+/// A cell or a part of one on its way to a patch.
+struct Node {
+    Vec2 low{0};
+    float size = 1;
+    std::vector<ClipPolygon> pieces;  // of the surface's triangles
+    Index first_child = no_index;     // of four, once divided
+
+    [[nodiscard]] bool is_leaf() const { return first_child == no_index; }
 };
+
+/// Area in cells and its first moment.
+struct Extent {
+    float area = 0;
+    Vec2 moment{0};
+};
+
+/// Calls `visit(a, b, c, area)` for the triangles that a polygon falls into.
+template <class Visit>
+void for_triangles(const ClipPolygon& polygon, const Visit& visit) {
+    for (int i = 1; i + 1 < polygon.count; ++i) {
+        const ClipCorner &a = polygon[0], &b = polygon[i], &c = polygon[i + 1];
+        const Vec2 ab = b.cell - a.cell, ac = c.cell - a.cell;
+        const float area = 0.5F * std::abs(ab.x * ac.y - ab.y * ac.x);
+        if (area > 0) visit(a, b, c, area);
+    }
+}
 
 class FlatDivision {
   public:
-    FlatDivision(const World& world, const Surface& surface, float size_m)
+    FlatDivision(const World& world, const Surface& surface, Side side, const MeshConfig& config)
         : world_(world),
           body_(world.bodies[surface.body]),
           surface_(surface),
-          plane_(lay_grid(body_, surface, size_m)),
-          cells_(static_cast<std::size_t>(plane_.grid.cells_u) *
-                 static_cast<std::size_t>(plane_.grid.cells_v)) {}
+          side_(side),
+          config_(config),
+          plane_(lay_grid(body_, surface, config.patch_size_m)) {
+        for (int v = 0; v < plane_.grid.cells_v; ++v)
+            for (int u = 0; u < plane_.grid.cells_u; ++u) nodes_.push_back({Vec2(u, v), 1, {}, no_index});
+    }
 
     SurfaceShapes run() {
         for (const Index t : surface_.triangles) add_triangle(t);
-        SurfaceShapes out{plane_.grid, {}};
-        constexpr int tile = 4;
-        for (int v0 = 0; v0 < plane_.grid.cells_v; v0 += tile)
-            for (int u0 = 0; u0 < plane_.grid.cells_u; u0 += tile)
-                for (int v = v0; v < std::min(v0 + tile, plane_.grid.cells_v); ++v)
-                    for (int u = u0; u < std::min(u0 + tile, plane_.grid.cells_u); ++u)
-                        add_shape(u, v, out.shapes);
-        return out;
+        if (config_.is_too_coarse) {
+            for (Index root = 0, roots = static_cast<Index>(nodes_.size()); root < roots; ++root)
+                refine(root);
+            while (balance()) {
+            }
+        }
+        return emit();
     }
 
   private:
@@ -148,10 +139,11 @@ class FlatDivision {
     }
 
     void add_triangle(Index t) {
-        Polygon whole;
+        ClipPolygon whole;
+        whole.triangle = t;
         Vec2 low(1e30F), high(-1e30F);
         for (std::size_t k = 0; k < 3; ++k) {
-            Corner corner{to_cell(body_.positions[body_.triangles[t].vertices[k]]), Vec3(0)};
+            ClipCorner corner{to_cell(body_.positions[body_.triangles[t].vertices[k]]), Vec3(0)};
             corner.barycentric[static_cast<int>(k)] = 1;
             low = glm::min(low, corner.cell);
             high = glm::max(high, corner.cell);
@@ -162,39 +154,16 @@ class FlatDivision {
             return std::min(cells - 1, static_cast<int>(std::floor(x)));
         };
         for (int v = first(low.y); v <= last(high.y, plane_.grid.cells_v); ++v) {
-            const Polygon row =
-                clip(clip(whole, 1, static_cast<float>(v), 1), 1, static_cast<float>(v + 1), -1);
+            const ClipPolygon row = clip(clip(whole, 1, static_cast<float>(v), Keep::above), 1,
+                                         static_cast<float>(v + 1), Keep::below);
             if (row.count < 3) continue;
-            for (int u = first(low.x); u <= last(high.x, plane_.grid.cells_u); ++u) {
-                const Polygon piece =
-                    clip(clip(row, 0, static_cast<float>(u), 1), 0, static_cast<float>(u + 1), -1);
-                if (piece.count >= 3) add_piece(cells_[cell_index(u, v)], piece, t);
-            }
+            for (int u = first(low.x); u <= last(high.x, plane_.grid.cells_u); ++u)
+                add_piece(nodes_[cell_index(u, v)], clip_to_square(row, Vec2(u, v), 1));
         }
     }
 
-    void add_piece(CellContent& content, const Polygon& piece, Index t) {
-        const Index texture = world_.materials[surface_.material].texture;
-        for (int i = 1; i + 1 < piece.count; ++i) {
-            const Corner &a = piece[0], &b = piece[i], &c = piece[i + 1];
-            const Vec2 ab = b.cell - a.cell, ac = c.cell - a.cell;
-            const float area = 0.5F * std::abs(ab.x * ac.y - ab.y * ac.x);
-            if (area <= 0) continue;
-            content.area += area;
-            content.moment += area / 3.0F * (a.cell + b.cell + c.cell);
-            content.pieces.push_back({a.cell, b.cell, c.cell});
-            if (texture != no_index)
-                content.colour +=
-                    area * mean_texture(world_.textures[texture], {uv_at(t, a), uv_at(t, b), uv_at(t, c)});
-        }
-    }
-
-    [[nodiscard]] Vec2 uv_at(Index t, const Corner& corner) const {
-        Vec2 uv(0);
-        for (std::size_t k = 0; k < 3; ++k)
-            uv += corner.barycentric[static_cast<int>(k)] *
-                  body_.texture_coordinates[body_.triangles[t].vertices[k]];
-        return uv;
+    static void add_piece(Node& node, const ClipPolygon& piece) {
+        if (piece.count >= 3) node.pieces.push_back(piece);
     }
 
     [[nodiscard]] std::size_t cell_index(int u, int v) const {
@@ -202,46 +171,174 @@ class FlatDivision {
                static_cast<std::size_t>(u);
     }
 
-    void add_shape(int u, int v, std::vector<PatchShape>& shapes) const {
-        const CellContent& content = cells_[cell_index(u, v)];
-        if (content.area < sliver_share) return;
-        PatchShape shape;
-        shape.cell = cell_index(u, v);
-        shape.normal = surface_.normal;
-        shape.area_m2 = std::min(content.area, 1.0F) * plane_.cell_area;
-        shape.centre = to_body(content.moment / content.area);
-        if (world_.materials[surface_.material].texture != no_index)
-            shape.texture_mean = content.colour / content.area;
-        shape.origin = to_body(Vec2(u, v));
-        shape.edge_u = plane_.edge_u;
-        shape.edge_v = plane_.edge_v;
-        if (content.area < whole_cell_share) add_fragments(content, shape);
-        shapes.push_back(std::move(shape));
+    [[nodiscard]] static Extent extent_of(const Node& node) {
+        Extent extent;
+        for (const ClipPolygon& piece : node.pieces) {
+            for_triangles(piece,
+                          [&](const ClipCorner& a, const ClipCorner& b, const ClipCorner& c, float area) {
+                              extent.area += area;
+                              extent.moment += area / 3.0F * (a.cell + b.cell + c.cell);
+                          });
+        }
+        return extent;
+    }
+    [[nodiscard]] static bool is_empty(const Node& node) {
+        return extent_of(node).area < sliver_share * node.size * node.size;
     }
 
-    void add_fragments(const CellContent& content, PatchShape& shape) const {
+    // --- refinement
+
+    void refine(Index n) {
+        const float edge = nodes_[n].size * std::max(glm::length(plane_.edge_u), glm::length(plane_.edge_v));
+        if (0.5F * edge < config_.finest_m || is_empty(nodes_[n])) return;
+        const PatchShape shape = shape_of(nodes_[n]);
+        if (!config_.is_too_coarse(shape, surface_.body, side_)) return;
+        divide(n);
+        for (Index q = 0; q < 4; ++q) refine(nodes_[n].first_child + q);
+    }
+
+    void divide(Index n) {
+        const auto first = static_cast<Index>(nodes_.size());
+        const float half = 0.5F * nodes_[n].size;
+        for (Index q = 0; q < 4; ++q) {
+            Node child{nodes_[n].low + half * Vec2(q % 2, q / 2), half, {}, no_index};
+            for (const ClipPolygon& piece : nodes_[n].pieces)
+                add_piece(child, clip_to_square(piece, child.low, half));
+            nodes_.push_back(std::move(child));
+        }
+        nodes_[n].first_child = first;
+        nodes_[n].pieces.clear();
+    }
+
+    [[nodiscard]] Index leaf_at(const Vec2& at) const {
+        auto n = static_cast<Index>(cell_index(static_cast<int>(at.x), static_cast<int>(at.y)));
+        while (!nodes_[n].is_leaf()) {
+            const Vec2 middle = nodes_[n].low + 0.5F * nodes_[n].size;
+            n = nodes_[n].first_child + (at.x >= middle.x ? 1 : 0) + (at.y >= middle.y ? 2 : 0);
+        }
+        return n;
+    }
+
+    /// Divides leaves that are more than twice as large as a neighbour, so that interpolation meets few.
+    /// Returns whether there were any.
+    bool balance() {
+        std::vector<Index> too_large;
+        const Vec2 end(plane_.grid.cells_u, plane_.grid.cells_v);
+        for (const Node& node : nodes_) {
+            if (!node.is_leaf() || node.size > 0.25F) continue;
+            const Vec2 centre = node.low + 0.5F * node.size;
+            for (int side = 0; side < 9; ++side) {
+                const Vec2 at = centre + node.size * Vec2(side % 3 - 1, side / 3 - 1);
+                if (at.x < 0 || at.y < 0 || at.x >= end.x || at.y >= end.y) continue;
+                const Index neighbour = leaf_at(at);
+                if (nodes_[neighbour].size > 2 * node.size && !is_empty(nodes_[neighbour]))
+                    too_large.push_back(neighbour);
+            }
+        }
+        std::sort(too_large.begin(), too_large.end());
+        too_large.erase(std::unique(too_large.begin(), too_large.end()), too_large.end());
+        for (const Index n : too_large) divide(n);
+        return !too_large.empty();
+    }
+
+    // --- result
+
+    SurfaceShapes emit() const {
+        SurfaceShapes out;
+        out.grid = plane_.grid;
+        out.tree.cells_u = plane_.grid.cells_u;
+        out.tree.cells_v = plane_.grid.cells_v;
+        out.tree.cells.assign(cell_index(0, plane_.grid.cells_v), no_index);
+        constexpr int tile = 4;
+        for (int v0 = 0; v0 < plane_.grid.cells_v; v0 += tile)
+            for (int u0 = 0; u0 < plane_.grid.cells_u; u0 += tile)
+                for (int v = v0; v < std::min(v0 + tile, plane_.grid.cells_v); ++v)
+                    for (int u = u0; u < std::min(u0 + tile, plane_.grid.cells_u); ++u)
+                        out.tree.cells[cell_index(u, v)] = emit_node(nodes_[cell_index(u, v)], out);
+        return out;
+    }
+
+    Index emit_node(const Node& node, SurfaceShapes& out) const {
+        if (node.is_leaf()) {
+            if (is_empty(node)) return no_index;
+            out.shapes.push_back(shape_of(node));
+            if (world_.materials[surface_.material].texture != no_index)
+                out.shapes.back().texture_mean = mean_colour(node);
+            return static_cast<Index>(out.shapes.size() - 1);
+        }
+        const auto quarter = static_cast<Index>(out.tree.quarters.size());
+        out.tree.quarters.emplace_back();
+        for (Index q = 0; q < 4; ++q) {
+            const Index entry = emit_node(nodes_[node.first_child + q], out);
+            out.tree.quarters[quarter][q] = entry;
+        }
+        return CellTree::divided | quarter;
+    }
+
+    [[nodiscard]] PatchShape shape_of(const Node& node) const {
+        const Extent extent = extent_of(node);
+        const float whole = node.size * node.size;
+        PatchShape shape;
+        shape.normal = surface_.normal;
+        shape.area_m2 = std::min(extent.area, whole) * plane_.cell_area;
+        shape.centre = to_body(extent.moment / extent.area);
+        shape.origin = to_body(node.low);
+        shape.edge_u = node.size * plane_.edge_u;
+        shape.edge_v = node.size * plane_.edge_v;
+        if (extent.area < whole_cell_share * whole) add_fragments(node, extent.area, shape);
+        return shape;
+    }
+
+    void add_fragments(const Node& node, float total, PatchShape& shape) const {
         float sum = 0;
-        for (const auto& [a, b, c] : content.pieces) {
-            const Vec2 ab = b - a, ac = c - a;
-            sum += 0.5F * std::abs(ab.x * ac.y - ab.y * ac.x);
-            const Vec3 corner = to_body(a);
-            shape.fragments.push_back(
-                {corner, to_body(b) - corner, to_body(c) - corner, surface_.normal, sum / content.area});
+        for (const ClipPolygon& piece : node.pieces) {
+            for_triangles(
+                piece, [&](const ClipCorner& a, const ClipCorner& b, const ClipCorner& c, float area) {
+                    sum += area;
+                    const Vec3 corner = to_body(a.cell);
+                    shape.fragments.push_back({corner, to_body(b.cell) - corner, to_body(c.cell) - corner,
+                                               surface_.normal, sum / total});
+                });
         }
         shape.fragments.back().cumulative_share = 1;
+    }
+
+    [[nodiscard]] Rgb mean_colour(const Node& node) const {
+        const Texture& texture = world_.textures[world_.materials[surface_.material].texture];
+        Rgb colour(0);
+        float sum = 0;
+        for (const ClipPolygon& piece : node.pieces) {
+            for_triangles(piece,
+                          [&](const ClipCorner& a, const ClipCorner& b, const ClipCorner& c, float area) {
+                              const Index t = piece.triangle;
+                              colour += area * mean_texture(texture, {uv_at(t, a), uv_at(t, b), uv_at(t, c)});
+                              sum += area;
+                          });
+        }
+        return colour / sum;
+    }
+
+    [[nodiscard]] Vec2 uv_at(Index t, const ClipCorner& corner) const {
+        Vec2 uv(0);
+        for (std::size_t k = 0; k < 3; ++k)
+            uv += corner.barycentric[static_cast<int>(k)] *
+                  body_.texture_coordinates[body_.triangles[t].vertices[k]];
+        return uv;
     }
 
     const World& world_;
     const Body& body_;
     const Surface& surface_;
+    Side side_;
+    const MeshConfig& config_;
     PlaneGrid plane_;
-    std::vector<CellContent> cells_;
+    std::vector<Node> nodes_;  // the first ones are the cells
 };
 
 }  // namespace
 
-SurfaceShapes divide_flat(const World& world, const Surface& surface, float size_m) {
-    return FlatDivision(world, surface, size_m).run();
+SurfaceShapes divide_flat(const World& world, const Surface& surface, Side side, const MeshConfig& config) {
+    return FlatDivision(world, surface, side, config).run();
 }
 
 Rgb mean_texture(const Texture& texture, const std::array<Vec2, 3>& corners) {

@@ -61,8 +61,8 @@ Stencil Interpolation::at(Index body, Index triangle, Side side, const Vec3& pos
     const auto which = static_cast<std::size_t>(side);
     Stencil stencil;
     if (grid.cells_u > 0) {
-        if (grid.first_cell[which] != std::size_t{no_index})
-            stencil = on_grid(grid, grid.first_cell[which], position);
+        if (const CellTree& tree = mesh_->trees[surface][which]; !tree.empty())
+            stencil = on_grid(tree, grid.cell_at(position));
     } else if (const Index patch = mesh_->patch_of_triangle[body][which][triangle]; patch != no_index) {
         stencil = on_clusters(patch, position);
     }
@@ -73,25 +73,14 @@ Stencil Interpolation::at(Index body, Index triangle, Side side, const Vec3& pos
     return stencil;
 }
 
-Stencil Interpolation::on_grid(const SurfaceGrid& grid, std::size_t first_cell, const Vec3& position) const {
-    const Vec3 d = position - grid.origin;
-    const float u = std::clamp(glm::dot(d, grid.per_metre_u), 0.0F, static_cast<float>(grid.cells_u)) - 0.5F;
-    const float v = std::clamp(glm::dot(d, grid.per_metre_v), 0.0F, static_cast<float>(grid.cells_v)) - 0.5F;
-    const int u0 = static_cast<int>(std::floor(u)), v0 = static_cast<int>(std::floor(v));
-    const float fu = u - static_cast<float>(u0), fv = v - static_cast<float>(v0);
+Stencil Interpolation::on_grid(const CellTree& tree, const Vec2& at) {
+    const Vec2 end(tree.cells_u, tree.cells_v);
+    const Vec2 place = glm::clamp(at, Vec2(0), end);
+    const float reach = 0.5F * tree.leaf_at(place).size;
     Stencil stencil;
-    for (int dv = 0; dv < 2; ++dv) {
-        for (int du = 0; du < 2; ++du) {
-            const int cu = u0 + du, cv = v0 + dv;
-            if (cu < 0 || cv < 0 || cu >= grid.cells_u || cv >= grid.cells_v) continue;
-            const Index patch =
-                mesh_->patch_of_cell[first_cell +
-                                     static_cast<std::size_t>(cv) * static_cast<std::size_t>(grid.cells_u) +
-                                     static_cast<std::size_t>(cu)];
-            if (patch != no_index) stencil.add(patch, (du == 1 ? fu : 1 - fu) * (dv == 1 ? fv : 1 - fv));
-        }
-    }
-    normalise(stencil);
+    tree.for_overlaps(place - reach, place + reach,
+                      [&](Index patch, float area) { stencil.add(patch, area); });
+    if (stencil.count > 0) normalise(stencil);
     return stencil;
 }
 

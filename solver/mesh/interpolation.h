@@ -22,8 +22,9 @@ struct Stencil {
     }
 };
 
-/// Smooth values from patch values: bilinear between cell centres on flat surfaces, weighted by distance
-/// among a cluster and its neighbours on curved ones. Never crosses the border of a surface or its two sides.
+/// Smooth values from patch values: on flat surfaces the mean over a window as large as the cell at the
+/// point, which between equal cells is bilinear; on curved ones weighted by distance among a cluster and its
+/// neighbours. Never crosses the border of a surface or its two sides.
 /// Thread-safety: const after construction; the mesh must outlive it.
 class Interpolation {
   public:
@@ -38,8 +39,7 @@ class Interpolation {
                                    std::span<const float> confidence);
 
   private:
-    [[nodiscard]] Stencil on_grid(const SurfaceGrid& grid, std::size_t first_cell,
-                                  const Vec3& position) const;
+    [[nodiscard]] static Stencil on_grid(const CellTree& tree, const Vec2& at);
     [[nodiscard]] Stencil on_clusters(Index patch, const Vec3& position) const;
 
     const PatchMesh* mesh_;

@@ -2,8 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
+#include "solver/base/context.h"
+#include "solver/mesh/cell_tree.h"
 #include "solver/mesh/surface.h"
 
 namespace afterglow {
@@ -26,14 +30,31 @@ struct PatchPoint {
     Vec3 position, normal;
 };
 
+/// A patch before it has a number; normals are those of the front. All geometry is in the body's frame.
+struct PatchShape {
+    float area_m2 = 0;
+    Vec3 centre{0}, normal{0};
+    Vec3 origin{0}, edge_u{0}, edge_v{0};  ///< where it is a whole rectangle
+    std::vector<Fragment> fragments;       ///< otherwise
+    Rgb texture_mean{1};
+
+    /// As PatchMesh::point_on.
+    [[nodiscard]] PatchPoint point_on(float s, float t) const;
+};
+
 /// How one surface is divided. Flat: a grid of cells in its plane. Curved: clusters of triangles.
 struct SurfaceGrid {
     Vec3 origin{0};  ///< corner of cell (0, 0), body frame
     Vec3 per_metre_u{
         0};  ///< cells along u in one metre, as a vector: dot with an offset gives the cell coordinate
     Vec3 per_metre_v{0};
-    int cells_u = 0, cells_v = 0;             ///< 0 for curved surfaces
-    std::array<std::size_t, 2> first_cell{};  ///< by side, into PatchMesh::patch_of_cell
+    int cells_u = 0, cells_v = 0;  ///< 0 for curved surfaces
+
+    /// Cell coordinates of a point.
+    [[nodiscard]] Vec2 cell_at(const Vec3& point) const {
+        const Vec3 d = point - origin;
+        return {glm::dot(d, per_metre_u), glm::dot(d, per_metre_v)};
+    }
 };
 
 /// The patches of a world, as arrays over patches. Static patches come first, then those of each actor in
@@ -53,8 +74,8 @@ struct PatchMesh {
     std::vector<Fragment> fragments;
 
     Surfaces surfaces;
-    std::vector<SurfaceGrid> grids;    ///< by surface
-    std::vector<Index> patch_of_cell;  ///< by cell, no_index where nothing is
+    std::vector<SurfaceGrid> grids;              ///< by surface
+    std::vector<std::array<CellTree, 2>> trees;  ///< [surface][side] of flat ones: patches; empty where none
     std::vector<std::array<std::vector<Index>, 2>>
         patch_of_triangle;                   ///< [body][side][triangle]; curved surfaces only
     std::vector<Index> first_patch_of_body;  ///< size bodies + 1
@@ -74,13 +95,19 @@ struct PatchMesh {
 /// Which sides of which surfaces get patches.
 using SideMask = std::vector<std::array<bool, 2>>;  ///< [surface][side]
 
+/// Whether a part of a body's side is too coarse a patch. Called from several threads; the same answer for
+/// the same part.
+using CoarsenessTest = std::function<bool(const PatchShape& part, Index body, Side side)>;
+
 struct MeshConfig {
     float patch_size_m = 0.2F;  ///< target edge; large faces are divided into cells no longer than this
+    float finest_m = 0;         ///< no cell is halved to an edge below it
+    CoarsenessTest is_too_coarse = {};  ///< which cells are; empty: none
 };
 
-/// Divides the wanted sides of all surfaces into patches. Deterministic.
-/// Errors: too_large past 4 million patches, naming the patch size. Thread-safety: pure.
+/// Divides the wanted sides of all surfaces into patches. Same result for any number of threads.
+/// Errors: too_large past 4 million patches, naming the patch size; cancelled. Thread-safety: pure.
 PatchMesh make_patches(const World& world, Surfaces surfaces, const SideMask& wanted,
-                       const MeshConfig& config);
+                       const MeshConfig& config, const Context& context = Context(1));
 
 }  // namespace afterglow

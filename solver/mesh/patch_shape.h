@@ -7,25 +7,17 @@
 
 namespace afterglow {
 
-/// A patch before it is given a side and a number; normals are those of the front.
-struct PatchShape {
-    float area_m2 = 0;
-    Vec3 centre{0}, normal{0};
-    Vec3 origin{0}, edge_u{0}, edge_v{0};  ///< where it is a whole rectangle
-    std::vector<Fragment> fragments;       ///< otherwise
-    Rgb texture_mean{1};
-    std::size_t cell = 0;          ///< flat: v · cells_u + u
-    std::vector<Index> triangles;  ///< curved: what it is made of, of the body
-};
-
-/// The shapes of one surface and how to find them.
+/// The shapes of one side of a surface and how to find them.
 struct SurfaceShapes {
     SurfaceGrid grid;
+    CellTree tree;                   ///< flat: items are indices into `shapes`
     std::vector<PatchShape> shapes;  ///< neighbours near each other, so that runs of 16 are compact
+    std::vector<std::vector<Index>> triangles;  ///< curved: what each shape is made of, of the body
 };
 
-/// A flat surface as a grid of cells no longer than `size_m`, clipped to its triangles; in 4 × 4 tiles.
-SurfaceShapes divide_flat(const World& world, const Surface& surface, float size_m);
+/// A side of a flat surface as a grid of cells no longer than the asked size, clipped to its triangles, in
+/// 4 × 4 tiles; cells that are too coarse are halved both ways, again and again.
+SurfaceShapes divide_flat(const World& world, const Surface& surface, Side side, const MeshConfig& config);
 
 /// A curved surface as clusters of connected triangles about `size_m` across.
 SurfaceShapes divide_curved(const World& world, const Surface& surface, float size_m);

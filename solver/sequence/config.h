@@ -20,11 +20,11 @@ enum class Solution {
     progressive,  ///< Cohen et al. 1988: shooting, cold every frame
 };
 
-/// Samples per pixel and the like, in three steps.
+/// How fine the patches, lines and samples are, in three steps; see QualityLevel.
 enum class Quality {
-    draft,    ///< 1 camera sample a pixel
-    preview,  ///< 4
-    final,    ///< 16
+    draft,    ///< even patches, 128 lines each; 1 to 4 camera samples a pixel
+    preview,  ///< patches refined where they must be, 256 lines; 4 to 16 samples
+    final,    ///< four times the patches, 512 lines; 8 to 64 samples
 };
 
 /// Which pictures of a frame are made and handed over. The final one is the same either way.
@@ -38,8 +38,10 @@ enum class Revisions {
 struct SequenceConfig {
     Visibility visibility = Visibility::back_buffer;  ///< see Visibility
     Solution solution = Solution::progressive;        ///< see Solution
-    int rays_per_patch = 256;  ///< sight lines of a patch, 16 to 65,536, rounded up to a multiple of 16
-    std::optional<double> patch_size_m;  ///< target patch edge; chosen from the scene's size where not given
+    std::optional<int> rays_per_patch;  ///< sight lines of a patch, 16 to 65,536, rounded up to a multiple of
+                                        ///< 16; by quality where not given
+    std::optional<double> patch_size_m;  ///< target patch edge, even everywhere; by quality and the scene's
+                                         ///< size, and finer where needed, where not given
     double asked_error = 0.02;           ///< relative error at which a solution is finished, in (0, 1)
     Quality quality = Quality::preview;  ///< see Quality
     int width = 640;                     ///< pixels, 1 to 16,384

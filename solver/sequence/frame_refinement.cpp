@@ -2,26 +2,10 @@
 
 #include "solver/radiosity/ambient.h"
 #include "solver/sequence/prepare.h"
+#include "solver/sequence/quality.h"
 #include "solver/sequence/stopwatch.h"
 
 namespace afterglow {
-
-namespace {
-
-/// What a quality stands for.
-PictureConfig samples_of(Quality quality, std::uint64_t seed) {
-    switch (quality) {
-        case Quality::draft:
-            return {1, 4, seed};
-        case Quality::preview:
-            return {4, 4, seed};
-        case Quality::final:
-            return {16, 4, seed};
-    }
-    return {};
-}
-
-}  // namespace
 
 FrameRefinement::FrameRefinement(SequenceState::Parts& parts, double time_s)
     : parts_(parts), time_s_(time_s), lights_(lights_at(parts.world, time_s)) {
@@ -122,7 +106,7 @@ Picture FrameRefinement::picture(int width, int height, const LitWorld& lit, con
 
 Picture FrameRefinement::preliminary_picture(int width, int height, const Context& context) {
     const auto irradiance = irradiance_with_ambient(problem(), *light_);
-    return picture(width, height, lit_by(irradiance), {1, 0, parts_.config.seed}, context);
+    return picture(width, height, lit_by(irradiance), {1, 1, 0, 0, parts_.config.seed}, context);
 }
 
 Picture FrameRefinement::final_picture(const Context& context) {
@@ -131,8 +115,7 @@ Picture FrameRefinement::final_picture(const Context& context) {
     LitWorld lit = lit_by(indirect);
     lit.direct = &direct;
     lit.lights = lights_;
-    return picture(parts_.config.width, parts_.config.height, lit,
-                   samples_of(parts_.config.quality, parts_.config.seed), context);
+    return picture(parts_.config.width, parts_.config.height, lit, level_of(parts_.config).picture, context);
 }
 
 }  // namespace afterglow

@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "solver/formfactor/static_cache.h"
+#include "solver/sequence/quality.h"
 #include "solver/sequence/stopwatch.h"
+#include "solver/visibility/coarseness.h"
 #include "solver/visibility/reach.h"
 
 namespace afterglow {
 
 namespace {
-
-constexpr float patches_wanted = 8000;  // where no patch size is given
 
 void require(bool holds, const char* setting, const char* rule) {
     if (!holds) throw Error(ErrorKind::invalid_input, setting, rule);
@@ -39,8 +39,8 @@ float reached_area(const Surfaces& surfaces, const SideMask& reached) {
 }  // namespace
 
 void check(const SequenceConfig& config) {
-    require(config.rays_per_patch >= 16 && config.rays_per_patch <= 65536, "rays",
-            "must be from 16 to 65536");
+    require(!config.rays_per_patch || (*config.rays_per_patch >= 16 && *config.rays_per_patch <= 65536),
+            "rays", "must be from 16 to 65536");
     require(!config.patch_size_m || (*config.patch_size_m > 0 && std::isfinite(*config.patch_size_m)),
             "patch_size", "must be above 0 metres");
     require(config.asked_error > 0 && config.asked_error < 1, "error", "must lie between 0 and 1");
@@ -62,25 +62,45 @@ PlacedCamera find_camera(const World& world, const std::string& name) {
     throw Error(ErrorKind::not_found, "camera", "there is no camera \"" + name + "\"; there are: " + names);
 }
 
-void mesh_world(SequenceState::Parts& parts, const Context& context) {
+namespace {
+
+/// Patches for the sides that light can reach: even ones of the asked size, or as fine as they must be.
+PatchMesh mesh_reached(SequenceState::Parts& parts, const Context& context) {
     const World& world = parts.world;
-    const auto size_for = [](float area) { return std::sqrt(area / patches_wanted); };
+    const QualityLevel level = level_of(parts.config);
+    const auto size_for = [&](float area) { return std::sqrt(area / level.cells); };
     const auto asked = parts.config.patch_size_m;
     const float first_guess = asked ? static_cast<float>(*asked) : size_for(area_of_all(world));
-    Surfaces surfaces = find_surfaces(world, {.facet_size_m = first_guess});
+    const Surfaces surfaces = find_surfaces(world, {.facet_size_m = first_guess});
     ReachConfig reach;
     reach.spacing_m = first_guess;
     reach.seed = parts.config.seed;
     const SideMask reached = reachable_sides(world, surfaces, parts.caster, reach, context);
     MeshConfig mesh;
     mesh.patch_size_m = asked ? first_guess : size_for(reached_area(surfaces, reached));
-    parts.mesh = make_patches(world, std::move(surfaces), reached, mesh);
+    if (asked || level.finest_share >= 1) return make_patches(world, surfaces, reached, mesh, context);
+
+    parts.caster.set_poses(poses_at(world, 0));
+    CoarsenessConfig coarseness;
+    coarseness.size_per_distance = level.size_per_distance;
+    coarseness.seed = parts.config.seed;
+    // A hair less, so that halving a whole number of times reaches it.
+    mesh.finest_m = 0.999F * level.finest_share * mesh.patch_size_m;
+    mesh.is_too_coarse = Coarseness(parts.caster, surfaces, reached, lift_for(world), coarseness);
+    return make_patches(world, surfaces, reached, mesh, context);
+}
+
+}  // namespace
+
+void mesh_world(SequenceState::Parts& parts, const Context& context) {
+    const World& world = parts.world;
+    parts.mesh = mesh_reached(parts, context);
     if (parts.mesh.size() == 0)
         throw Error(ErrorKind::invalid_input, world.name, "no surface can be reached by light or seen");
 
     parts.interpolation.emplace(world, parts.mesh);
     parts.lamps = find_lamps(world, parts.mesh);
-    const Index rays = rounded_up(parts.config.rays_per_patch);
+    const Index rays = rounded_up(level_of(parts.config).rays_per_patch);
     parts.sight.emplace(parts.mesh, world, rays, parts.config.seed);
     const Index light_lines = std::clamp(rays / 4, Index{16}, Index{256});
     parts.light.emplace(parts.mesh, *parts.sight, parts.lamps, light_lines, mixed(parts.config.seed));

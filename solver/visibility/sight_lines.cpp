@@ -10,21 +10,21 @@ namespace {
 constexpr std::size_t blocks_per_chunk = 4;
 constexpr float lift_per_extent = 1e-5F;
 
-float scene_extent(const World& world) {
+}  // namespace
+
+float lift_for(const World& world) {
     Box box;
     for (const Body& body : world.bodies)
         for (const Vec3& p : body.positions) box.add(body.path.at(0).point(p));
-    return box.empty() ? 0 : glm::length(box.extent());
+    return box.empty() ? 0 : lift_per_extent * glm::length(box.extent());
 }
-
-}  // namespace
 
 SightLines::SightLines(const PatchMesh& mesh, const World& world, Index lines_per_patch, std::uint64_t seed)
     : mesh_(&mesh),
       lines_per_patch_(lines_per_patch),
       seed_(seed),
       points_(lines_per_patch),
-      lift_m_(lift_per_extent * scene_extent(world)) {
+      lift_m_(lift_for(world)) {
     for (Index body = 0; body + 1 < mesh.first_patch_of_body.size(); ++body) {
         const Index last = mesh.first_patch_of_body[body + 1];
         for (Index first = mesh.first_patch_of_body[body]; first < last; first += block_size)

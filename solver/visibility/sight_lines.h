@@ -15,6 +15,9 @@ inline constexpr Index sees_nothing = no_index;  ///< it leaves the scene
 inline constexpr Index sees_inside =
     no_index - 1;  ///< its origin is buried: it meets a side that light cannot reach
 
+/// How far the origins of a world's lines are lifted off their surfaces, metres. Thread-safety: pure.
+float lift_for(const World& world);
+
 /// Sixteen or fewer neighbouring patches whose sight lines share their directions.
 struct PatchBlock {
     Index first = 0;

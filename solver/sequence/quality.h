@@ -1,0 +1,21 @@
+#pragma once
+
+#include "solver/image/picture.h"
+#include "solver/mesh/patch_mesh.h"
+#include "solver/sequence/config.h"
+
+namespace afterglow {
+
+/// What a quality stands for. See README.md for the figures behind the numbers.
+struct QualityLevel {
+    float cells = 1500;              ///< into which the reached surfaces are divided before any is refined
+    float finest_share = 0.125F;     ///< of a cell's edge: no smaller patches; 1: all cells as they are
+    float size_per_distance = 0.7F;  ///< see CoarsenessConfig
+    int rays_per_patch = 256;        ///< where the settings name none
+    PictureConfig picture;           ///< its seed is the settings'
+};
+
+/// Thread-safety: pure.
+QualityLevel level_of(const SequenceConfig& config);
+
+}  // namespace afterglow

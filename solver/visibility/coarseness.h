@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+
+#include "solver/base/sampling.h"
+#include "solver/mesh/patch_mesh.h"
+#include "solver/visibility/ray_caster.h"
+
+namespace afterglow {
+
+struct CoarsenessConfig {
+    int rays = 32;  ///< looked along from each part, 4 to 256
+    /// A part is too coarse where its edge over the distance of what it sees has a root mean square above
+    /// this.
+    float size_per_distance = 0.5F;
+    std::uint64_t seed = 1;  ///< of the rays
+};
+
+/// Tells where patches must be small: irradiance bends where something is near compared with the patch (Ward,
+/// Rubinstein and Clear 1988: its gradient goes with 1 / distance), and jumps where a patch is partly buried
+/// in something that stands on it. Furniture is judged among furniture, an actor as it stands among
+/// everything. A CoarsenessTest. Thread-safety: calls are const; the caster must not move its actors
+/// meanwhile.
+class Coarseness {
+  public:
+    /// `reached` tells the sides that light can reach: a ray that meets another one starts buried. All
+    /// arguments but the last must outlive this.
+    Coarseness(const RayCaster& placed, const Surfaces& surfaces, const SideMask& reached, float lift_m,
+               const CoarsenessConfig& config);
+
+    bool operator()(const PatchShape& part, Index body, Side side) const;
+
+  private:
+    const RayCaster* placed_;
+    const Surfaces* surfaces_;
+    const SideMask* reached_;
+    float lift_m_;
+    CoarsenessConfig config_;
+    SobolPoints points_;
+};
+
+}  // namespace afterglow
