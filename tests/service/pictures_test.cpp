@@ -14,10 +14,11 @@ constexpr std::string_view png_signature = "\x89PNG\r\n\x1a\n";
 class Pictures : public ServiceTest {
   protected:
     /// Renders some frames, each in a job of its own, and compares them with the reference.
-    void compare(const std::string& scene, const std::vector<std::string>& frames) {
+    void compare(const std::string& scene, const std::vector<std::string>& frames,
+                 const std::string& quality, double most) {
         std::vector<std::string> ids;
         for (const std::string& frame : frames)
-            ids.push_back(submit(scene + ".glb", {"--frames", frame, "--size", "256x256"}));
+            ids.push_back(submit(scene + ".glb", {"--frames", frame, "--size", "256x256", "--quality", quality}));
         for (std::size_t i = 0; i < frames.size(); ++i) {
             const Outcome watch = afterglow({"watch", ids[i]});
             ASSERT_EQ(watch.exit, 0) << watch.err;
@@ -30,9 +31,7 @@ class Pictures : public ServiceTest {
                               read_picture(reference + "_1.exr"), read_picture(reference + "_2.exr"));
             RecordProperty(scene + "_" + number, std::to_string(error.relative_rmse));
             std::cout << scene << " frame " << frames[i] << ": relative RMSE " << error.relative_rmse << '\n';
-            // Patches of the default settings leave a few percent; 15 % still tells a wrong scene, a missing
-            // bounce or a shifted shadow.
-            EXPECT_LT(error.relative_rmse, 0.15) << scene << " frame " << frames[i];
+            EXPECT_LT(error.relative_rmse, most) << scene << " frame " << frames[i];
         }
     }
     /// The data of the image event that made a frame final.
@@ -47,11 +46,16 @@ class Pictures : public ServiceTest {
 };
 
 TEST_F(Pictures, CornellSlideIsNearThePathTracer) {
-    compare("cornell-slide", {"0", "12", "36"});
+    compare("cornell-slide", {"0", "12", "36"}, "preview", 0.03);
 }
 
 TEST_F(Pictures, LivingRoomIsNearThePathTracer) {
-    compare("living-room", {"0", "24", "72"});
+    compare("living-room", {"0", "24", "72"}, "preview", 0.03);
+}
+
+TEST_F(Pictures, FinalOnesAreNearer) {
+    compare("cornell-slide", {"12"}, "final", 0.010);
+    compare("living-room", {"24"}, "final", 0.015);
 }
 
 TEST_F(Pictures, AddressesAreImmutableAndTagged) {
