@@ -16,7 +16,7 @@ QualityLevel level_of(const SequenceConfig& config) {
         case Quality::final:
             level.cells = 6000;
             level.rays_per_patch = 512;
-            level.picture = {8, 64, 2, 0.02F};
+            level.picture = {8, 64, 4, 0.02F};
             break;
     }
     level.picture.seed = config.seed;
