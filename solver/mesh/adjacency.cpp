@@ -49,11 +49,10 @@ Adjacency find_adjacency(const Body& body) {
         std::size_t last = first;
         while (last < uses.size() && uses[last].low == uses[first].low && uses[last].high == uses[first].high)
             ++last;
-        // An edge of very many triangles (a fan of fins) would cost its square; neighbours in order connect
-        // it as well.
-        for (std::size_t i = first; i + 1 < last; ++i) {
-            pairs.emplace_back(uses[i].triangle, uses[i + 1].triangle);
-            pairs.emplace_back(uses[i + 1].triangle, uses[i].triangle);
+        // Where three or more meet, something stands on the edge: light differs from one side to the other.
+        if (last - first == 2) {
+            pairs.emplace_back(uses[first].triangle, uses[first + 1].triangle);
+            pairs.emplace_back(uses[first + 1].triangle, uses[first].triangle);
         }
         first = last;
     }

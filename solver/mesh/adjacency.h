@@ -7,7 +7,7 @@
 
 namespace afterglow {
 
-/// Which triangles of a body share an edge. Vertices at the same position count as one, since files split
+/// Which triangles of a body share an edge that no third one touches. Vertices at the same position count as one, since files split
 /// them at creases and texture seams.
 struct Adjacency {
     std::vector<std::size_t> begin;  ///< size triangles + 1
