@@ -32,8 +32,8 @@ class HttpServer {
     /// Takes the address and begins to answer; returns the port. Errors: io where the address cannot be had,
     /// for example because another program listens there.
     int start();
-    /// Ends: streams that have an end within two seconds at it, others at their next piece, other replies when
-    /// they are sent. Returns when all is quiet.
+    /// Ends: streams that have an end within two seconds at it, others at their next piece, other replies
+    /// when they are sent. Returns when all is quiet.
     void stop();
     [[nodiscard]] bool is_running() const;
 

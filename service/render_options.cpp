@@ -38,7 +38,8 @@ void declare_options(CLI::App& app, Typed& typed) {
     app.add_option("--visibility", typed.visibility, "How a frame learns what its sight lines see");
     app.add_option("--solution", typed.solution, "How a frame's light is solved");
     app.add_option("--rays", typed.rays, "Sight lines a patch, 16 to 65536 [by quality]");
-    app.add_option("--patch-size", typed.patch_size, "Patch edge in metres, even everywhere [by quality and scene]");
+    app.add_option("--patch-size", typed.patch_size,
+                   "Patch edge in metres, even everywhere [by quality and scene]");
     app.add_option("--error", typed.error, "Asked relative error, 0.02 or 2% [2%]");
     app.add_option("--camera", typed.camera, "Camera by name [the first]");
     app.add_option("--exposure", typed.exposure,

@@ -6,7 +6,8 @@ namespace afterglow {
 
 namespace {
 
-// Beyond this many diagonals the integrand varies so little over the area that the costlier way gains nothing.
+// Beyond this many diagonals the integrand varies so little over the area that the costlier way gains
+// nothing.
 constexpr float far_diagonals = 1.5F;
 
 RectanglePoint by_area(const RectangleLight& light, const Vec3& normal_area, const Vec3& from, float s,

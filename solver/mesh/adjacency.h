@@ -7,8 +7,8 @@
 
 namespace afterglow {
 
-/// Which triangles of a body share an edge that no third one touches. Vertices at the same position count as one, since files split
-/// them at creases and texture seams.
+/// Which triangles of a body share an edge that no third one touches. Vertices at the same position count as
+/// one, since files split them at creases and texture seams.
 struct Adjacency {
     std::vector<std::size_t> begin;  ///< size triangles + 1
     std::vector<Index> neighbour;    ///< triangles across an edge, by triangle
