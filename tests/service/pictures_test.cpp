@@ -14,11 +14,12 @@ constexpr std::string_view png_signature = "\x89PNG\r\n\x1a\n";
 class Pictures : public ServiceTest {
   protected:
     /// Renders some frames, each in a job of its own, and compares them with the reference.
-    void compare(const std::string& scene, const std::vector<std::string>& frames,
-                 const std::string& quality, double most) {
+    void compare(const std::string& scene, const std::vector<std::string>& frames, const std::string& quality,
+                 double most) {
         std::vector<std::string> ids;
         for (const std::string& frame : frames)
-            ids.push_back(submit(scene + ".glb", {"--frames", frame, "--size", "256x256", "--quality", quality}));
+            ids.push_back(
+                submit(scene + ".glb", {"--frames", frame, "--size", "256x256", "--quality", quality}));
         for (std::size_t i = 0; i < frames.size(); ++i) {
             const Outcome watch = afterglow({"watch", ids[i]});
             ASSERT_EQ(watch.exit, 0) << watch.err;
