@@ -69,6 +69,18 @@ class Frames(Case):
         self.render("--out", "deep/er")
         self.assertEqual(self.names("deep/er"), frame_names(0, LAST_FRAME))
 
+    def test_a_paths_file_moves_things_and_dims_the_lamp(self):
+        examples = SCENE.parent / "examples"
+        paths = ["--paths", examples / "study-paths.json", "--fps", "1"]
+        self.render("--frames", "0-3", "--out", "still", scene=examples / "study.json")
+        self.render("--frames", "0-3", *paths, "--out", "moved", scene=examples / "study.json")
+        means = [oiio.ImageBufAlgo.computePixelStats(self.picture(f"moved/frame_{n:04}.exr")).avg[0] for n in range(4)]
+        # The paths file holds the lamp at a quarter at 2 s (a step), and gives it back before 3 s.
+        self.assertLess(means[2], 0.6 * means[0])
+        self.assertGreater(means[3], 1.5 * means[2])
+        moved, still = self.bytes_of("moved"), self.bytes_of("still")
+        self.assertNotEqual(moved["frame_0001.exr"], still["frame_0001.exr"])
+
     def test_pictures_are_float_radiance_and_srgb(self):
         self.render("--frames", "0")
         exr = self.picture("out/frame_0000.exr").spec()
