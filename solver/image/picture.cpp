@@ -42,8 +42,9 @@ SeenPoint look_at(const LitWorld& lit, const Ray& ray, const Hit& hit) {
     const Stencil stencil = lit.interpolation->at(hit.body, hit.triangle, hit.side, in_body);
     seen.radiance += seen.reflectance / pi * Interpolation::value(stencil, lit.irradiance, lit.confidence);
 
-    seen.normal = normal_at(*lit.world, *lit.caster, hit);
-    seen.position = at + lit.lift_m * seen.normal;
+    const float sign = hit.side == Side::front ? 1.0F : -1.0F;
+    seen.normal = pose.direction(sign * lit.normals->at(hit.body, hit.triangle, hit.u, hit.v));
+    seen.position = at + lit.lift_m * normal_at(*lit.world, *lit.caster, hit);
     return seen;
 }
 

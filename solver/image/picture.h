@@ -9,6 +9,7 @@
 #include "solver/image/camera.h"
 #include "solver/image/direct_light.h"
 #include "solver/mesh/interpolation.h"
+#include "solver/mesh/smooth_normals.h"
 
 namespace afterglow {
 
@@ -17,6 +18,7 @@ struct LitWorld {
     const World* world = nullptr;
     const PatchMesh* mesh = nullptr;
     const Interpolation* interpolation = nullptr;
+    const SmoothNormals* normals = nullptr;
     const RayCaster* caster = nullptr;    ///< with the bodies where they stand
     std::span<const Material> materials;  ///< as they are at this time
     /// By patch, W/m², interpolated: all of it, or what `direct` and `lights` do not bring.

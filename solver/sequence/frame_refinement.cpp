@@ -86,6 +86,7 @@ LitWorld FrameRefinement::lit_by(std::span<const Rgb> irradiance) const {
     lit.world = &parts_.world;
     lit.mesh = &parts_.mesh;
     lit.interpolation = &*parts_.interpolation;
+    lit.normals = &*parts_.normals;
     lit.caster = &parts_.caster;
     lit.materials = materials_;
     lit.irradiance = irradiance;

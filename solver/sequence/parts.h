@@ -21,6 +21,7 @@ struct SequenceState::Parts {
     RayCaster caster;
     PatchMesh mesh;
     std::optional<Interpolation> interpolation;
+    std::optional<SmoothNormals> normals;
     Lamps lamps;
     std::optional<SightLines> sight;
     std::optional<LightLines> light;

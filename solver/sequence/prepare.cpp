@@ -99,6 +99,7 @@ void mesh_world(SequenceState::Parts& parts, const Context& context) {
         throw Error(ErrorKind::invalid_input, world.name, "no surface can be reached by light or seen");
 
     parts.interpolation.emplace(world, parts.mesh);
+    parts.normals.emplace(world, parts.mesh.surfaces);
     parts.lamps = find_lamps(world, parts.mesh);
     const Index rays = rounded_up(level_of(parts.config).rays_per_patch);
     parts.sight.emplace(parts.mesh, world, rays, parts.config.seed);
