@@ -34,7 +34,7 @@ std::filesystem::path FrameFetcher::fetch_file(int frame, const std::string& end
     if (!path.starts_with('/') || path.starts_with("//"))
         throw ClientError(ExitCode::no_server, connection_.server(),
                           "names no path for the " + ending + " of frame " + std::to_string(frame));
-    const auto file = folder_ / frame_file_name(frame, ending);
+    auto file = folder_ / frame_file_name(frame, ending);
     std::error_code missing;
     const auto size = std::filesystem::file_size(file, missing);
     if (!missing && connection_.head(path).header("Content-Length") == std::to_string(size)) {

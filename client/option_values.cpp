@@ -83,6 +83,7 @@ Json settings_json(const JobSettings& settings) {
     put("width", settings.width);
     put("height", settings.height);
     put("quality", settings.quality);
+    put("estimate", settings.estimate);
     put("method", settings.method);
     put("visibility", settings.visibility);
     put("solution", settings.solution);

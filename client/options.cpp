@@ -46,6 +46,7 @@ void add_settings(CLI::App& app, JobSettings& s) {
     app.add_option("--patch-size", s.patch_size_m, "Target edge of a patch in metres")->type_name("");
     add_parsed(app, "--error", "Asked relative error: 0.02 or 2%", parse_share,
                [&s](double share) { s.error = share; });
+    app.add_option("--estimate", s.estimate, "Of each picture's error: none or probes")->type_name("");
     app.add_option("--camera", s.camera, "Name of the camera; default: the first")->type_name("");
     app.add_option("--seed", s.seed, "Of every random choice")->type_name("");
     app.add_option("--exposure", s.exposure_ev, "Stops; default: automatic")->type_name("");

@@ -15,14 +15,14 @@ enum class OutputFormat { text, json };
 
 /// Settings of a job as given on the command line; what is not given is left to the server.
 struct JobSettings {
-    std::optional<std::string> frames;                                         ///< "A-B" or "A"
-    std::optional<double> fps;                                                 ///< frame n shows time n / fps
-    std::optional<int> width;                                                  ///< pixels
-    std::optional<int> height;                                                 ///< pixels
-    std::optional<std::string> quality, method, visibility, solution, camera;  ///< names
-    std::optional<int> rays;                                                   ///< sight lines of a patch
-    std::optional<double> patch_size_m;                                        ///< target patch edge
-    std::optional<double> error;  ///< asked relative error, 0 to 1
+    std::optional<std::string> frames;  ///< "A-B" or "A"
+    std::optional<double> fps;          ///< frame n shows time n / fps
+    std::optional<int> width;           ///< pixels
+    std::optional<int> height;          ///< pixels
+    std::optional<std::string> quality, method, visibility, solution, estimate, camera;  ///< names
+    std::optional<int> rays;             ///< sight lines of a patch
+    std::optional<double> patch_size_m;  ///< target patch edge
+    std::optional<double> error;         ///< asked relative error, 0 to 1
     std::optional<std::uint64_t> seed;
     std::optional<double> exposure_ev;              ///< stops
     std::optional<std::vector<double>> background;  ///< radiance of lines that escape: red, green, blue

@@ -54,7 +54,7 @@ def draw(results, path):
     chart = Chart("How long until one cold frame of 256×256 is how exact?", "CPU seconds, everything included", (0.1, 100), (0.005, 0.64))
     chart.grid((0.1, 1, 10, 100), (0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64))
     for scene, points in results.items():
-        for method, dashes in (("afterglow", ""), ("path tracer", "5 4")):
+        for method, dashes in (("afterglow", "none"), ("path tracer", "5 4")):
             chart.line(f"{scene}, {method}", [points[key] for key in points if key[0] == method], colours[scene], dashes)
     chart.write(path)
 

@@ -35,7 +35,7 @@ class Chart:
     """Both axes logarithmic; y is a share, shown in percent."""
 
     def __init__(self, title, x_label, x_range, y_range):
-        self.x_range, self.y_range = x_range, y_range
+        self.x_range, self.y_range, self.names = x_range, y_range, 0
         self.parts = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 360" font-family="sans-serif" font-size="13">',
                       '<rect width="760" height="360" fill="white"/>', f'<text x="70" y="26" font-size="15">{title}</text>',
                       f'<text x="330" y="344" text-anchor="middle">{x_label}</text>',
@@ -57,12 +57,14 @@ class Chart:
             self.parts.append(f'<path d="M{self.x(value):.1f} 50V300" stroke="#ddd"/>'
                               f'<text x="{self.x(value):.1f}" y="320" text-anchor="middle">{value:,g}</text>')
 
-    def line(self, name, points, colour, dashes=""):
+    def line(self, name, points, colour, dashes="none"):
         line = " ".join(f"{self.x(x):.1f},{self.y(y):.1f}" for x, y in points)
         self.parts.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2" stroke-dasharray="{dashes}"/>')
         self.parts += [f'<circle cx="{self.x(x):.1f}" cy="{self.y(y):.1f}" r="3.5" fill="{colour}"/>' for x, y in points]
-        x, y = points[-1]
-        self.parts.append(f'<text x="{self.x(x) + 8:.1f}" y="{self.y(y) + 4:.1f}" fill="{colour}">{name}</text>')
+        self.names += 1
+        row = 50 + 20 * self.names
+        self.parts.append(f'<path d="M592 {row - 4}h22" stroke="{colour}" stroke-width="2" stroke-dasharray="{dashes}"/>'
+                          f'<text x="620" y="{row}" fill="{colour}" font-size="12">{name}</text>')
 
     def write(self, path):
         pathlib.Path(path).write_text("\n".join(self.parts + ["</svg>"]) + "\n", encoding="utf-8")
