@@ -81,7 +81,7 @@ SceneStore::Added SceneStore::add(std::string_view bytes, const SceneUpload& upl
 std::string SceneStore::add_paths(std::string_view json_text) {
     const Json document = parse_json(json_text, paths_name);
     if (!document.is_object()) JsonView(document, paths_name).fail("expected an object");
-    const std::string id = content_id("paths|" + sha256(json_text));
+    std::string id = content_id("paths|" + sha256(json_text));
     const std::lock_guard lock(mutex_);
     if (!paths_.contains(id)) {
         write_file(file_of(id), json_text);
