@@ -79,8 +79,8 @@ void Encoder::loop() {
 
 void Encoder::store(const PictureTask& task) {
     const Revision& revision = task.revision;
-    const FrameInfo info{revision.frame, revision.revision, revision.final, revision.residual,
-                         task.error_bound};
+    const FrameInfo info{revision.frame,    revision.revision, revision.final,
+                         revision.residual, task.error_bound,  revision.picture_error};
     try {
         const EncodedPicture picture{
             encode_png(revision.radiance.width, revision.radiance.height, revision.srgb),

@@ -9,8 +9,9 @@ struct FrameInfo {
     int frame = 0;
     int revision = 0;  ///< counts from 1 within its frame
     bool final = false;
-    double residual = 0;                ///< as in FrameStatistics
-    std::optional<double> error_bound;  ///< the certificate; known for final pictures only
+    double residual = 0;                       ///< as in FrameStatistics
+    std::optional<double> error_bound;         ///< the certificate; known for final pictures only
+    std::optional<double> picture_error = {};  ///< of final pictures, where it was asked for
 };
 
 }  // namespace afterglow

@@ -73,6 +73,7 @@ Json to_json(const JobSettings& settings) {
     json["rays"] = or_null(config.rays_per_patch);
     json["patch_size_m"] = or_null(config.patch_size_m);
     json["error"] = config.asked_error;
+    json["estimate"] = name_of(config.estimate);
     json["camera"] = config.camera.empty() ? Json(nullptr) : Json(config.camera);
     json["seed"] = config.seed;
     json["exposure_ev"] = or_null(config.exposure_ev);
@@ -113,6 +114,7 @@ Json frame_json(const std::string& job, const FrameInfo& info) {
             {"final", info.final},
             {"residual", info.residual},
             {"error_bound", or_null(info.error_bound)},
+            {"picture_error", or_null(info.picture_error)},
             {"png", picture_url(job, info, PictureType::png)},
             {"exr", picture_url(job, info, PictureType::exr)}};
 }
@@ -124,6 +126,7 @@ Json image_json(const std::string& job, const FrameInfo& info) {
             {"exr", picture_url(job, info, PictureType::exr)},
             {"residual", info.residual},
             {"error_bound", or_null(info.error_bound)},
+            {"picture_error", or_null(info.picture_error)},
             {"final", info.final}};
 }
 

@@ -46,7 +46,12 @@ std::string finished_line(const FrameStatistics& frame, const FrameRange& range)
     std::snprintf(text.data(), text.size(), "frame %d (%d of %d): %.2f s, solver error at most %.2g %%",
                   frame.frame, frame.frame - range.first + 1, range.last - range.first + 1,
                   frame.total.count() / 1000, 100 * frame.error_bound);
-    return text.data();
+    std::string line = text.data();
+    if (frame.picture_error) {
+        std::snprintf(text.data(), text.size(), ", picture error about %.2g %%", 100 * *frame.picture_error);
+        line += text.data();
+    }
+    return line;
 }
 
 /// One frame, solved and written. The static pass runs within the first frame but is not counted as its time.

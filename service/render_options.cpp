@@ -23,7 +23,7 @@ using Text = std::optional<std::string>;
 struct Typed {
     std::string scene;
     Text paths, frames, fps, size, quality, method, visibility, solution, rays, patch_size, error, camera,
-        threads, seed, out, report, background, unit, up, punctual_lights, exposure, cache;
+        threads, seed, out, report, background, estimate, unit, up, punctual_lights, exposure, cache;
     bool quiet = false;
 };
 
@@ -41,6 +41,7 @@ void declare_options(CLI::App& app, Typed& typed) {
     app.add_option("--patch-size", typed.patch_size,
                    "Patch edge in metres, even everywhere [by quality and scene]");
     app.add_option("--error", typed.error, "Asked relative error, 0.02 or 2% [2%]");
+    app.add_option("--estimate", typed.estimate, "Of each picture's error: none or probes [none]");
     app.add_option("--camera", typed.camera, "Camera by name [the first]");
     app.add_option("--exposure", typed.exposure,
                    "Stops of the .png pictures [automatic, from the first frame]");
@@ -105,6 +106,7 @@ SequenceConfig sequence_config(const Typed& typed) {
     if (typed.rays) config.rays_per_patch = static_cast<int>(whole_number("--rays", *typed.rays, 16, 65536));
     if (typed.patch_size) config.patch_size_m = positive_number("--patch-size", *typed.patch_size);
     if (typed.error) config.asked_error = share("--error", *typed.error);
+    if (typed.estimate) config.estimate = estimate_named(*typed.estimate);
     if (typed.quality) config.quality = quality_named(*typed.quality);
     if (typed.size) {
         const PictureSize size = picture_size("--size", *typed.size);

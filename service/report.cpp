@@ -10,6 +10,10 @@ namespace afterglow {
 
 namespace {
 
+Json or_null(const std::optional<double>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
 Json frame_json(const FrameStatistics& frame) {
     return {{"frame", frame.frame},
             {"ms",
@@ -22,7 +26,9 @@ Json frame_json(const FrameStatistics& frame) {
             {"shots", frame.shots},
             {"active_patches", frame.active_patches},
             {"residual", frame.residual},
-            {"error_bound", frame.error_bound}};
+            {"error_bound", frame.error_bound},
+            {"picture_error", or_null(frame.picture_error)},
+            {"picture_error_spread", or_null(frame.picture_error_spread)}};
 }
 
 }  // namespace

@@ -55,6 +55,7 @@ void read_accuracy(const JsonView& settings, SequenceConfig& config) {
     if (const auto field = settings.find("patch_size_m"))
         config.patch_size_m = field->as_number_in(1e-4, 1e4);
     if (const auto field = settings.find("error")) config.asked_error = field->as_number_in(1e-9, 0.999);
+    if (const auto field = settings.find("estimate")) config.estimate = read_name(*field, estimate_named);
     if (const auto field = settings.find("seed"))
         config.seed = static_cast<std::uint64_t>(field->as_integer_in(0, std::int64_t{1} << 53U));
 }
@@ -69,7 +70,8 @@ Rgb read_background(const JsonView& field) {
 
 JobSettings read_settings(const JsonView& settings, const Limits& limits) {
     settings.allow_only({"frames", "fps", "width", "height", "quality", "method", "visibility", "solution",
-                         "rays", "patch_size_m", "error", "camera", "seed", "exposure_ev", "background"});
+                         "rays", "patch_size_m", "error", "estimate", "camera", "seed", "exposure_ev",
+                         "background"});
     JobSettings out;
     read_size(settings, out.sequence, limits);
     read_method(settings, out.sequence);

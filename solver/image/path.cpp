@@ -13,15 +13,63 @@ namespace {
 // Lamps must not block the rays that end on them.
 constexpr float short_of_lamp = 1 - 1e-4F;
 
-/// Where a path meets a surface, ready for rays to start.
-struct PathPoint {
-    Vec3 position{0};  // lifted
-    Vec3 normal{0};
-};
+void check(const PathPictureConfig& config) {
+    if (config.samples_per_pixel < 2)
+        throw Error(ErrorKind::invalid_input, "samples_per_pixel", "must be 2 or more");
+}
 
-/// Irradiance, W/m², that the lamps and lights taken by shadow rays give a point.
-Rgb irradiance_by_shadow_rays(const PathScene& scene, const PathPoint& at, RandomStream& random,
-                              std::uint64_t& rays_traced) {
+/// Whether lamps that are sampled count where the first ray meets them.
+enum class LampsMetFirst { count, counted_already };
+
+Rgb radiance_along(const PathScene& scene, const PathConfig& config, Ray ray, LampsMetFirst lamps_met,
+                   RandomStream& random, std::uint64_t& rays_traced) {
+    Rgb radiance(0), throughput(1);
+    for (int bounce = 0; bounce <= config.most_bounces; ++bounce) {
+        const PathPoint at = follow(scene, ray, rays_traced);
+        // A lamp that the last point sampled has given its light already.
+        const bool counts =
+            at.light == PathPoint::Light::met || (bounce == 0 && lamps_met == LampsMetFirst::count);
+        if (counts) radiance += throughput * at.emitted;
+        const float largest = max_channel(at.reflectance);
+        if (largest <= 0) return radiance;
+
+        throughput *= at.reflectance;
+        LampChoice lamp;
+        if (scene.direct != nullptr && !scene.direct->empty())
+            lamp = {random.next(), random.next(), random.next()};
+        radiance += throughput / pi * sampled_irradiance(scene, at, lamp, rays_traced);
+        if (bounce >= config.sure_bounces) {
+            if (random.next() >= largest) return radiance;
+            throughput /= std::min(largest, 1.0F);
+        }
+        const float u = random.next(), v = random.next();
+        ray = {at.position, Frame(at.normal).to_world(cosine_direction(u, v))};
+    }
+    return radiance;
+}
+
+}  // namespace
+
+PathPoint follow(const PathScene& scene, const Ray& ray, std::uint64_t& rays_traced) {
+    ++rays_traced;
+    PathPoint point;
+    const Hit hit = scene.caster->nearest(ray, Scope::everything);
+    if (hit.body == no_index) {
+        point.emitted = scene.world->background;
+        return point;
+    }
+    const Triangle& triangle = scene.world->bodies[hit.body].triangles[hit.triangle];
+    const Material& material = scene.materials[triangle.material];
+    point.emitted = emitted_by(material, hit.side);
+    point.reflectance = reflectance_at(*scene.world, material, hit);
+    point.normal = normal_at(*scene.world, *scene.caster, hit);
+    point.position = ray.origin + hit.distance * ray.direction + scene.lift_m * point.normal;
+    if (scene.direct != nullptr && scene.direct->covers(hit)) point.light = PathPoint::Light::sampled;
+    return point;
+}
+
+Rgb sampled_irradiance(const PathScene& scene, const PathPoint& at, const LampChoice& lamp,
+                       std::uint64_t& rays_traced) {
     Rgb sum(0);
     const auto add = [&](const Rgb& irradiance, const Vec3& direction, float distance_m) {
         if (max_channel(irradiance) <= 0) return;
@@ -30,8 +78,7 @@ Rgb irradiance_by_shadow_rays(const PathScene& scene, const PathPoint& at, Rando
         if (!scene.caster->occluded(shadow, Scope::everything)) sum += irradiance;
     };
     if (scene.direct != nullptr && !scene.direct->empty()) {
-        const float choice = random.next(), s = random.next(), t = random.next();
-        const LightSample sample = scene.direct->sample(at.position, at.normal, choice, s, t);
+        const LightSample sample = scene.direct->sample(at.position, at.normal, lamp.choice, lamp.s, lamp.t);
         add(sample.irradiance, sample.direction, sample.distance_m);
     }
     for (const LightInPlace& light : scene.lights) {
@@ -41,43 +88,15 @@ Rgb irradiance_by_shadow_rays(const PathScene& scene, const PathPoint& at, Rando
     return sum;
 }
 
-void check(const PathPictureConfig& config) {
-    if (config.samples_per_pixel < 2)
-        throw Error(ErrorKind::invalid_input, "samples_per_pixel", "must be 2 or more");
+Rgb path_radiance(const PathScene& scene, const PathConfig& config, const Ray& ray, RandomStream& random,
+                  std::uint64_t& rays_traced) {
+    // A camera has sampled no lamp.
+    return radiance_along(scene, config, ray, LampsMetFirst::count, random, rays_traced);
 }
 
-}  // namespace
-
-Rgb path_radiance(const PathScene& scene, const PathConfig& config, const Ray& camera_ray,
-                  RandomStream& random, std::uint64_t& rays_traced) {
-    Rgb radiance(0), throughput(1);
-    Ray ray = camera_ray;
-    for (int bounce = 0; bounce <= config.most_bounces; ++bounce) {
-        ++rays_traced;
-        const Hit hit = scene.caster->nearest(ray, Scope::everything);
-        if (hit.body == no_index) return radiance + throughput * scene.world->background;
-
-        const Triangle& triangle = scene.world->bodies[hit.body].triangles[hit.triangle];
-        const Material& material = scene.materials[triangle.material];
-        // A lamp that the last point sampled has given its light already; a camera has sampled none.
-        if (bounce == 0 || scene.direct == nullptr || !scene.direct->covers(hit))
-            radiance += throughput * emitted_by(material, hit.side);
-        const Rgb reflectance = reflectance_at(*scene.world, material, hit);
-        const float largest = max_channel(reflectance);
-        if (largest <= 0) return radiance;
-
-        const Vec3 normal = normal_at(*scene.world, *scene.caster, hit);
-        const PathPoint at{ray.origin + hit.distance * ray.direction + scene.lift_m * normal, normal};
-        throughput *= reflectance;
-        radiance += throughput / pi * irradiance_by_shadow_rays(scene, at, random, rays_traced);
-        if (bounce >= config.sure_bounces) {
-            if (random.next() >= largest) return radiance;
-            throughput /= std::min(largest, 1.0F);
-        }
-        const float u = random.next(), v = random.next();
-        ray = {at.position, Frame(normal).to_world(cosine_direction(u, v))};
-    }
-    return radiance;
+Rgb gathered_radiance(const PathScene& scene, const PathConfig& config, const Ray& ray, RandomStream& random,
+                      std::uint64_t& rays_traced) {
+    return radiance_along(scene, config, ray, LampsMetFirst::counted_already, random, rays_traced);
 }
 
 PathPixel trace_pixel(const CameraView& view, const PathScene& scene, const PathPictureConfig& config, int x,

@@ -37,12 +37,40 @@ struct PathConfig {
     int most_bounces = 4096;
 };
 
+/// What a ray of a path meets: a surface, ready for rays to start, or the background.
+struct PathPoint {
+    Rgb emitted{0};      ///< radiance towards where the ray came from, W/m²/sr
+    Rgb reflectance{0};  ///< 0: the path ends here
+    Vec3 position{0};    ///< lifted off the surface, world, metres
+    Vec3 normal{0};      ///< unit, on the side that was met
+    enum class Light { met, sampled } light = Light::met;  ///< sampled: it belongs to a lamp of `direct`
+};
+
+/// Follows a ray to the first thing it meets. Adds one to `rays_traced`. Thread-safety: pure but for that.
+PathPoint follow(const PathScene& scene, const Ray& ray, std::uint64_t& rays_traced);
+
+/// Places on the lamps, each number in [0,1): which lamp, and where on it.
+struct LampChoice {
+    float choice = 0, s = 0, t = 0;
+};
+
+/// An unbiased estimate of the irradiance, W/m², that a point gets straight from `direct` and `lights`: one
+/// shadow ray to the chosen place of the lamps, one to each light. Adds the number of rays to `rays_traced`.
+/// Thread-safety: pure but for that.
+Rgb sampled_irradiance(const PathScene& scene, const PathPoint& at, const LampChoice& lamp,
+                       std::uint64_t& rays_traced);
+
 /// An unbiased estimate of the radiance, W/m²/sr, that arrives at a ray's origin from its direction: emission
 /// and background as met, light from lamps and lights at every point by one shadow ray each, diffuse
 /// reflection by cosine-weighted bounces. Adds the number of rays to `rays_traced`. Source: Kajiya 1986, with
 /// Arvo and Kirk's Russian roulette 1990. Thread-safety: pure but for `random` and `rays_traced`.
 Rgb path_radiance(const PathScene& scene, const PathConfig& config, const Ray& ray, RandomStream& random,
                   std::uint64_t& rays_traced);
+
+/// The same for a ray that leaves a surface whose light by `sampled_irradiance` is taken apart: lamps that
+/// the ray meets first do not count.
+Rgb gathered_radiance(const PathScene& scene, const PathConfig& config, const Ray& ray, RandomStream& random,
+                      std::uint64_t& rays_traced);
 
 struct PathPictureConfig {
     int samples_per_pixel = 64;  ///< independent paths a pixel, box-filtered; 2 or more

@@ -30,6 +30,10 @@ constexpr std::array<Named<Quality>, 3> qualities{{
     {"preview", Quality::preview},
     {"final", Quality::final},
 }};
+constexpr std::array<Named<Estimate>, 2> estimates{{
+    {"none", Estimate::none},
+    {"probes", Estimate::probes},
+}};
 
 /// The entry of a table with a given name, or an error that lists the names there are.
 template <class Table>
@@ -68,11 +72,17 @@ Solution solution_named(std::string_view name) {
 Quality quality_named(std::string_view name) {
     return entry_named(qualities, name, "quality").value;
 }
+Estimate estimate_named(std::string_view name) {
+    return entry_named(estimates, name, "estimate").value;
+}
 std::string_view name_of(Visibility visibility) {
     return name_in(visibilities, visibility);
 }
 std::string_view name_of(Solution solution) {
     return name_in(solutions, solution);
+}
+std::string_view name_of(Estimate estimate) {
+    return name_in(estimates, estimate);
 }
 
 }  // namespace afterglow

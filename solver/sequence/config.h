@@ -33,6 +33,12 @@ enum class Revisions {
     final_only,  ///< none but the final one: less work
 };
 
+/// What is said of a final picture's error, beside the certificate of its solution.
+enum class Estimate {
+    none,    ///< nothing: no further work
+    probes,  ///< path tracing of a few pixels, see solver/image/probes.h
+};
+
 /// Settings of a job. What a frame finally is depends on these only, never on the clock or the number of
 /// threads.
 struct SequenceConfig {
@@ -52,6 +58,7 @@ struct SequenceConfig {
         exposure_ev;         ///< stops added to the automatic exposure's neutral 0; automatic where not given
     std::uint64_t seed = 1;  ///< of every random choice
     Revisions revisions = Revisions::all;  ///< see Revisions
+    Estimate estimate = Estimate::none;    ///< see Estimate
     std::filesystem::path cache_folder;    ///< static rows are kept here; empty: not kept
 };
 
@@ -69,7 +76,9 @@ const Method& method_named(std::string_view name);
 Visibility visibility_named(std::string_view name);
 Solution solution_named(std::string_view name);
 Quality quality_named(std::string_view name);
+Estimate estimate_named(std::string_view name);
 std::string_view name_of(Visibility visibility);
 std::string_view name_of(Solution solution);
+std::string_view name_of(Estimate estimate);
 
 }  // namespace afterglow

@@ -81,6 +81,10 @@ std::vector<Rgb> FrameRefinement::indirect_irradiance() const {
     return indirect;
 }
 
+DirectLight FrameRefinement::direct_light() const {
+    return {parts_.mesh, parts_.lamps, parts_.caster, emission_};
+}
+
 LitWorld FrameRefinement::lit_by(std::span<const Rgb> irradiance) const {
     LitWorld lit;
     lit.world = &parts_.world;
@@ -112,11 +116,25 @@ Picture FrameRefinement::preliminary_picture(int width, int height, const Contex
 
 Picture FrameRefinement::final_picture(const Context& context) {
     const auto indirect = indirect_irradiance();
-    const DirectLight direct(parts_.mesh, parts_.lamps, parts_.caster, emission_);
+    const DirectLight direct = direct_light();
     LitWorld lit = lit_by(indirect);
     lit.direct = &direct;
     lit.lights = lights_;
     return picture(parts_.config.width, parts_.config.height, lit, level_of(parts_.config).picture, context);
+}
+
+void FrameRefinement::estimate_error(const Picture& final_picture, const Context& context) {
+    const Stopwatch watch;
+    context.report(0.9, "estimating the picture's error");
+    const DirectLight direct = direct_light();
+    const PathScene scene{&parts_.world, &parts_.caster, materials_,
+                          &direct,       lights_,        parts_.sight->lift_m()};
+    const CameraView view = view_at(parts_.camera, time_s_, final_picture.width, final_picture.height);
+    const ProbeEstimate estimate = afterglow::estimate_error(
+        final_picture, view, scene, level_of(parts_.config).probes, statistics_.rays_traced, context);
+    statistics_.picture_error = estimate.relative_error;
+    statistics_.picture_error_spread = estimate.standard_error;
+    statistics_.image += watch.elapsed();
 }
 
 }  // namespace afterglow

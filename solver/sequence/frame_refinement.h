@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "solver/formfactor/outside_light.h"
+#include "solver/image/probes.h"
 #include "solver/radiosity/progressive.h"
 #include "solver/sequence/parts.h"
 
@@ -22,6 +23,8 @@ class FrameRefinement {
     /// What is solved so far, with an estimate of the light still on its way.
     Picture preliminary_picture(int width, int height, const Context& context);
     Picture final_picture(const Context& context);
+    /// How far the final picture is off, by probes; noted in the statistics.
+    void estimate_error(const Picture& final_picture, const Context& context);
 
     [[nodiscard]] const Certificate& certificate() const { return certificate_; }
     /// Of the latest `solve`.
@@ -32,6 +35,7 @@ class FrameRefinement {
     void compile(const Context& context);
     [[nodiscard]] RadiosityProblem problem() const;
     [[nodiscard]] std::vector<Rgb> indirect_irradiance() const;
+    [[nodiscard]] DirectLight direct_light() const;
     [[nodiscard]] LitWorld lit_by(std::span<const Rgb> irradiance) const;
     Picture picture(int width, int height, const LitWorld& lit, const PictureConfig& config,
                     const Context& context);

@@ -9,6 +9,8 @@ QualityLevel level_of(const SequenceConfig& config) {
             level.finest_share = 1;
             level.rays_per_patch = 128;
             level.picture = {1, 4, 2, 0.1F};
+            level.probes.samples_per_part = 8;
+            level.probes.paths_per_sample = 2;
             break;
         case Quality::preview:
             level.picture = {4, 16, 2, 0.05F};
@@ -17,9 +19,13 @@ QualityLevel level_of(const SequenceConfig& config) {
             level.cells = 6000;
             level.rays_per_patch = 512;
             level.picture = {8, 64, 4, 0.02F};
+            // Half the error is a quarter of its square, to be told from noise that must be so much smaller.
+            level.probes.samples_per_part = 32;
+            level.probes.paths_per_sample = 4;
             break;
     }
     level.picture.seed = config.seed;
+    level.probes.seed = config.seed;
     if (config.rays_per_patch) level.rays_per_patch = *config.rays_per_patch;
     return level;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/image/picture.h"
+#include "solver/image/probes.h"
 #include "solver/mesh/patch_mesh.h"
 #include "solver/sequence/config.h"
 
@@ -13,6 +14,7 @@ struct QualityLevel {
     float size_per_distance = 0.7F;  ///< see CoarsenessConfig
     int rays_per_patch = 256;        ///< where the settings name none
     PictureConfig picture;           ///< its seed is the settings'
+    ProbeConfig probes;              ///< likewise; as many paths as the error to be told needs
 };
 
 /// Thread-safety: pure.

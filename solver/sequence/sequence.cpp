@@ -55,19 +55,28 @@ class Publisher {
         return sink_ && parts_.config.revisions == Revisions::all;
     }
 
-    void publish(Picture radiance, double residual, bool final) {
-        if (!sink_) return;
+    void publish_preliminary(Picture radiance, double residual) {
+        publish(std::move(radiance), residual, {});
+    }
+    void publish_final(Picture radiance, const FrameStatistics& statistics) {
         Revision revision;
+        revision.final = true;
+        revision.picture_error = statistics.picture_error;
+        revision.picture_error_spread = statistics.picture_error_spread;
+        publish(std::move(radiance), statistics.residual, std::move(revision));
+    }
+
+  private:
+    void publish(Picture radiance, double residual, Revision revision) {
+        if (!sink_) return;
         revision.frame = frame_;
         revision.revision = ++count_;
-        revision.final = final;
         revision.residual = residual;
         revision.srgb = to_srgb(radiance, *parts_.exposure_ev);
         revision.radiance = std::move(radiance);
         sink_(revision);
     }
 
-  private:
     const SequenceState::Parts& parts_;
     int frame_;
     const RevisionSink& sink_;
@@ -143,8 +152,9 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
             const Context stage = part.part(0.25 * done, done);
             frame.look(directions, *parts.strategy, stage);
             frame.solve(coarse_error, stage);
-            publisher.publish(frame.preliminary_picture(parts.config.width, parts.config.height, stage),
-                              frame.certificate().residual, false);
+            publisher.publish_preliminary(
+                frame.preliminary_picture(parts.config.width, parts.config.height, stage),
+                frame.certificate().residual);
         }
     }
     const Context last = context.part(0.6, 1);
@@ -152,7 +162,8 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     frame.solve(parts.config.asked_error, last);
     warn_of_exhaustion(parts, frame, frame_number);
     Picture picture = frame.final_picture(last);
-    publisher.publish(std::move(picture), frame.certificate().residual, true);
+    if (parts.config.estimate == Estimate::probes) frame.estimate_error(picture, last);
+    publisher.publish_final(std::move(picture), frame.statistics());
 
     FrameStatistics statistics = frame.statistics();
     statistics.frame = frame_number;

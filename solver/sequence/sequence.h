@@ -3,6 +3,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "solver/base/context.h"
@@ -22,8 +23,10 @@ struct FrameStatistics {
     std::uint64_t visibility_changes = 0;  ///< sight lines that see another patch than in the previous frame
     std::uint64_t shots = 0;
     std::uint64_t active_patches = 0;
-    double residual = 0;     ///< largest residual relative to the mean of ρH over non-emitters
-    double error_bound = 0;  ///< the certificate: residual / (1 − gain)
+    double residual = 0;                  ///< largest residual relative to the mean of ρH over non-emitters
+    double error_bound = 0;               ///< the certificate: residual / (1 − gain)
+    std::optional<double> picture_error;  ///< relative RMSE of the final picture, estimated if asked for
+    std::optional<double> picture_error_spread;  ///< the estimate's standard error
 };
 
 /// What the whole job cost before its frames.
@@ -44,7 +47,9 @@ struct Revision {
     bool final = false;   ///< the last one of its frame
     double residual = 0;  ///< as in FrameStatistics
     Picture radiance;
-    std::vector<std::uint8_t> srgb;  ///< width × height × 3
+    std::vector<std::uint8_t> srgb;                   ///< width × height × 3
+    std::optional<double> picture_error = {};         ///< of final pictures, as in FrameStatistics
+    std::optional<double> picture_error_spread = {};  ///< likewise
 };
 using RevisionSink = std::function<void(const Revision&)>;
 

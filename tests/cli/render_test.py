@@ -158,7 +158,9 @@ class Frames(Case):
         total = report["load_ms"] + report["static_ms"] + sum(p["ms"] for p in report["precompute"])
         for frame in report["frames"]:
             self.assertEqual(set(frame), {"frame", "ms", "rays_traced", "visibility_changes", "shots",
-                                          "active_patches", "residual", "error_bound"})
+                                          "active_patches", "residual", "error_bound", "picture_error",
+                                          "picture_error_spread"})
+            self.assertIsNone(frame["picture_error"])
             ms = frame["ms"]
             self.assertLessEqual(ms["visibility"] + ms["solve"] + ms["image"], ms["total"])
             self.assertGreater(frame["rays_traced"], 0)
@@ -166,6 +168,13 @@ class Frames(Case):
             total += ms["total"]
         # No part may be counted twice.
         self.assertLessEqual(total, wall_ms)
+
+    def test_estimate(self):
+        self.render("--frames", "2", "--report", "report.json", "--estimate", "probes")
+        frame = json.loads((self.folder / "report.json").read_text())["frames"][0]
+        self.assertGreater(frame["picture_error"], 0.005)
+        self.assertLess(frame["picture_error"], 1)
+        self.assertLess(frame["picture_error_spread"], frame["picture_error"])
 
     def test_help_and_version(self):
         for arguments in (["--help"], ["render", "--help"], ["version"]):

@@ -24,25 +24,18 @@ std::string complaint(const std::vector<std::string>& arguments) {
 }
 
 TEST(Options, ReadsEverySettingOfSubmit) {
-    const auto options = parse({"submit",       "scene.glb",
-                                "--frames",     "3-9",
-                                "--fps",        "12.5",
-                                "--size",       "320x180",
-                                "--quality",    "draft",
-                                "--method",     "full",
-                                "--visibility", "retrace",
-                                "--solution",   "progressive",
-                                "--rays",       "128",
-                                "--patch-size", "0.2",
-                                "--error",      "2%",
-                                "--camera",     "Camera 2",
-                                "--seed",       "18446744073709551615",
-                                "--exposure",   "-1.5",
-                                "--background", "0,.5,1"});
+    const auto options = parse({"submit",       "scene.glb", "--frames",     "3-9",
+                                "--fps",        "12.5",      "--size",       "320x180",
+                                "--quality",    "draft",     "--method",     "full",
+                                "--visibility", "retrace",   "--solution",   "progressive",
+                                "--rays",       "128",       "--patch-size", "0.2",
+                                "--error",      "2%",        "--estimate",   "probes",
+                                "--camera",     "Camera 2",  "--seed",       "18446744073709551615",
+                                "--exposure",   "-1.5",      "--background", "0,.5,1"});
     const Json settings = settings_json(std::get<SubmitCommand>(options.command).settings);
     const Json expected =
         Json::parse(R"({"frames":"3-9","fps":12.5,"width":320,"height":180,"quality":"draft",
-        "method":"full","visibility":"retrace","solution":"progressive","rays":128,"patch_size_m":0.2,
+        "estimate":"probes","method":"full","visibility":"retrace","solution":"progressive","rays":128,"patch_size_m":0.2,
         "error":0.02,"camera":"Camera 2","seed":18446744073709551615,"exposure_ev":-1.5,
         "background":[0.0,0.5,1.0]})");
     EXPECT_EQ(settings, expected);

@@ -210,5 +210,34 @@ TEST(Sequence, LastFrameFollowsDurationAndRate) {
     EXPECT_EQ(last_frame_of(small_room(), config), 20);
 }
 
+TEST(Sequence, EstimatesThePicturesErrorOnlyWhereAsked) {
+    SequenceConfig config = quick();
+    const Picture plain = final_of(small_room(), config, 1);
+    config.estimate = Estimate::probes;
+    std::vector<Revision> all;
+    const auto statistics =
+        render_sequence(small_room(), config, 1, 1, [&](const Revision& r) { all.push_back(r); });
+    EXPECT_TRUE(same_bits(plain, all.back().radiance)) << "the picture does not depend on it";
+    ASSERT_GT(all.size(), 1U);
+    EXPECT_FALSE(all.front().picture_error);
+    // Patches of 0.4 m and one camera sample where a pixel seems even: some error, but no wrong picture.
+    ASSERT_TRUE(all.back().picture_error && statistics.front().picture_error_spread);
+    EXPECT_GT(*all.back().picture_error, 0.002);
+    EXPECT_LT(*all.back().picture_error, 0.3);
+    EXPECT_EQ(all.back().picture_error, statistics.front().picture_error);
+    EXPECT_EQ(all.back().picture_error_spread, statistics.front().picture_error_spread);
+
+    config.estimate = Estimate::none;
+    EXPECT_FALSE(render_sequence(small_room(), config, 1, 1, {}).front().picture_error);
+}
+
+TEST(Sequence, TheEstimateOfAFurnaceIsItsRounding) {
+    SequenceConfig config = quick();
+    config.asked_error = 1e-5;
+    config.estimate = Estimate::probes;
+    const FrameStatistics frame = render_sequence(furnace(0.5F), config, 0, 0, {}).front();
+    EXPECT_LT(*frame.picture_error, 3 * *frame.picture_error_spread + 1e-3);
+}
+
 }  // namespace
 }  // namespace afterglow

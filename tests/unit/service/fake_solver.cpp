@@ -44,6 +44,7 @@ Scene fake_scene(std::string_view bytes, const SceneUpload& upload) {
 
 Revision fake_revision(int frame, int revision, int last_revision) {
     Revision out{frame, revision, revision == last_revision, 1.0 / revision, Picture(4, 2), {}};
+    if (out.final) out.picture_error = 0.03;
     out.srgb.assign(4 * 2 * 3, static_cast<std::uint8_t>(revision * 20));
     return out;
 }

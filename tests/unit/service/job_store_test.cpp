@@ -30,14 +30,16 @@ TEST(JobStore, TellsALifeInOrder) {
     const std::string id = jobs.add(draft(1)).id;
     EXPECT_TRUE(jobs.start(id));
     jobs.note_picture(id, {0, 1, false, 0.5, {}});
-    jobs.note_picture(id, {0, 2, true, 0.1, 0.2});
+    jobs.note_picture(id, {0, 2, true, 0.1, 0.2, 0.03});
     EXPECT_TRUE(jobs.end(id, JobState::succeeded));
     const auto events = events_of(jobs, id);
     EXPECT_THAT(names_of(events), testing::ElementsAre("job", "job", "image", "image", "job", "end"));
     const Json image = parse_json(events[3].data, "event");
     EXPECT_EQ(image.at("final"), true);
     EXPECT_EQ(image.at("error_bound"), 0.2);
+    EXPECT_EQ(image.at("picture_error"), 0.03);
     EXPECT_EQ(parse_json(events[2].data, "event").at("error_bound"), nullptr);
+    EXPECT_EQ(parse_json(events[2].data, "event").at("picture_error"), nullptr);
     const Json job = parse_json(events[4].data, "event");
     EXPECT_EQ(job.at("state"), "succeeded");
     EXPECT_EQ(job.at("frames_done"), 1);

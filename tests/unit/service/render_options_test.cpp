@@ -58,6 +58,8 @@ TEST(RenderOptions, EveryOptionReachesItsField) {
                                   "0.25",
                                   "--error",
                                   "1%",
+                                  "--estimate",
+                                  "probes",
                                   "--camera",
                                   "side",
                                   "--threads",
@@ -92,6 +94,7 @@ TEST(RenderOptions, EveryOptionReachesItsField) {
     EXPECT_EQ(o.sequence.rays_per_patch, 512);
     EXPECT_EQ(o.sequence.patch_size_m, 0.25);
     EXPECT_EQ(o.sequence.asked_error, 0.01);
+    EXPECT_EQ(o.sequence.estimate, Estimate::probes);
     EXPECT_EQ(o.sequence.camera, "side");
     EXPECT_EQ(o.threads, 3);
     EXPECT_EQ(o.sequence.seed, 18446744073709551U);
@@ -141,7 +144,7 @@ TEST(RenderOptions, FailuresNameTheOption) {
         EXPECT_EQ(error.kind(), ErrorKind::invalid_input) << option;
         EXPECT_EQ(error.place(), option);
     }
-    for (const char* option : {"--method", "--visibility", "--solution", "--quality"}) {
+    for (const char* option : {"--method", "--visibility", "--solution", "--quality", "--estimate"}) {
         const Error error = failure({"a.glb", option, "magic"});
         EXPECT_EQ(error.kind(), ErrorKind::not_found) << option;
         EXPECT_THAT(error.what(), HasSubstr("\"magic\"; there are: "));

@@ -42,7 +42,7 @@ TEST(Settings, LeftOutOnesKeepTheDefaults) {
 
 TEST(Settings, EveryFieldArrives) {
     const JobSettings s = settings(R"({"frames":"3-7","fps":30,"width":64,"height":32,"quality":"final",
-        "visibility":"retrace","solution":"progressive","rays":64,"patch_size_m":0.25,"error":0.05,"camera":"Eye",
+        "visibility":"retrace","solution":"progressive","rays":64,"patch_size_m":0.25,"error":0.05,"estimate":"probes","camera":"Eye",
         "seed":7,"exposure_ev":-1.5,"background":[0.1,0.2,0.3]})");
     EXPECT_EQ(s.frames, (FrameRange{3, 7}));
     EXPECT_EQ(s.sequence.frames_per_second, 30);
@@ -53,6 +53,7 @@ TEST(Settings, EveryFieldArrives) {
     EXPECT_EQ(s.sequence.rays_per_patch, 64);
     EXPECT_EQ(s.sequence.patch_size_m, 0.25);
     EXPECT_EQ(s.sequence.asked_error, 0.05);
+    EXPECT_EQ(s.sequence.estimate, Estimate::probes);
     EXPECT_EQ(s.sequence.camera, "Eye");
     EXPECT_EQ(s.sequence.seed, 7U);
     EXPECT_EQ(s.sequence.exposure_ev, -1.5);
@@ -102,11 +103,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{R"({"frames":"0-99999999999"})", "/frames"},
                     Wrong{R"({"frames":"0-100000"})", "/frames"}, Wrong{R"({"fps":0})", "/fps"},
                     Wrong{R"({"fps":-24})", "/fps"}, Wrong{R"({"quality":"best"})", "/quality"},
-                    Wrong{R"({"method":"magic"})", "/method"}, Wrong{R"({"visibility":"x"})", "/visibility"},
-                    Wrong{R"({"solution":1})", "/solution"}, Wrong{R"({"rays":1})", "/rays"},
-                    Wrong{R"({"rays":1e9})", "/rays"}, Wrong{R"({"patch_size_m":0})", "/patch_size_m"},
-                    Wrong{R"({"error":1})", "/error"}, Wrong{R"({"error":0})", "/error"},
-                    Wrong{R"({"seed":-1})", "/seed"}, Wrong{R"({"camera":null})", "/camera"},
+                    Wrong{R"({"estimate":"guess"})", "/estimate"}, Wrong{R"({"method":"magic"})", "/method"},
+                    Wrong{R"({"visibility":"x"})", "/visibility"}, Wrong{R"({"solution":1})", "/solution"},
+                    Wrong{R"({"rays":1})", "/rays"}, Wrong{R"({"rays":1e9})", "/rays"},
+                    Wrong{R"({"patch_size_m":0})", "/patch_size_m"}, Wrong{R"({"error":1})", "/error"},
+                    Wrong{R"({"error":0})", "/error"}, Wrong{R"({"seed":-1})", "/seed"},
+                    Wrong{R"({"camera":null})", "/camera"},
                     Wrong{R"({"exposure_ev":"auto"})", "/exposure_ev"},
                     Wrong{R"({"background":[0,0]})", "/background"},
                     Wrong{R"({"background":[0,-1,0]})", "/background"}, Wrong{"[]", ""}, Wrong{"null", ""}));

@@ -72,6 +72,7 @@ TEST(Worker, AJobRunsToItsEnd) {
     for (const FrameInfo& info : bench.frames.newest(id)) {
         EXPECT_TRUE(info.final);
         EXPECT_EQ(info.error_bound, 0.125);
+        EXPECT_EQ(info.picture_error, 0.03);
     }
     EXPECT_EQ(bench.frames.newest(id).size(), 3U);
     EXPECT_EQ(bench.solver.alive(), 0);
