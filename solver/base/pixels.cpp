@@ -29,7 +29,8 @@ void check_size(const OIIO::ImageSpec& spec, const std::string& place) {
 
 /// Writes `spec` and `data` through the library into memory.
 template <class T>
-std::string encode(const char* extension, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const T* data) {
+std::string encode(const char* extension, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
+                   const T* data) {
     std::vector<unsigned char> bytes;
     OIIO::Filesystem::IOVecOutput target(bytes);
     auto output = OIIO::ImageOutput::create(extension, &target);

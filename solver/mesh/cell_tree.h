@@ -22,6 +22,9 @@ struct CellTree {
     [[nodiscard]] bool empty() const { return cells.empty(); }
     static bool is_divided(Index entry) { return entry != no_index && (entry & divided) != 0; }
 
+    /// Where a quarter's corner lies, in quarters.
+    static Vec2 corner_of_quarter(std::size_t q) { return {q % 2 == 1 ? 1 : 0, q >= 2 ? 1 : 0}; }
+
     struct Leaf {
         Index item = no_index;
         Vec2 low{0};     ///< its corner
@@ -57,7 +60,7 @@ struct CellTree {
         const auto& four = quarters[entry & ~divided];
         const float half = 0.5F * size;
         for (std::size_t q = 0; q < 4; ++q)
-            visit_overlaps(four[q], corner + half * Vec2(q % 2, q / 2), half, low, high, visit);
+            visit_overlaps(four[q], corner + half * corner_of_quarter(q), half, low, high, visit);
     }
 };
 

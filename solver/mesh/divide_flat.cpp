@@ -13,7 +13,9 @@ namespace {
 
 constexpr double max_cells = 4e6;
 constexpr float whole_cell_share = 0.9999F;  // covered by this much, a cell counts as a whole rectangle
-constexpr float sliver_share = 1e-5F;        // below it, the neighbouring cell answers for the sliver
+constexpr std::array<std::array<int, 2>, 8> neighbours{
+    {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
+constexpr float sliver_share = 1e-5F;  // below it, the neighbouring cell answers for the sliver
 
 /// Along the longest border edge of the surface, so that rectangles fall into whole cells.
 Vec3 main_direction(const Body& body, const Surface& surface) {
@@ -201,7 +203,7 @@ class FlatDivision {
         const auto first = static_cast<Index>(nodes_.size());
         const float half = 0.5F * nodes_[n].size;
         for (Index q = 0; q < 4; ++q) {
-            Node child{nodes_[n].low + half * Vec2(q % 2, q / 2), half, {}, no_index};
+            Node child{nodes_[n].low + half * CellTree::corner_of_quarter(q), half, {}, no_index};
             for (const ClipPolygon& piece : nodes_[n].pieces)
                 add_piece(child, clip_to_square(piece, child.low, half));
             nodes_.push_back(std::move(child));
@@ -227,8 +229,8 @@ class FlatDivision {
         for (const Node& node : nodes_) {
             if (!node.is_leaf() || node.size > 0.25F) continue;
             const Vec2 centre = node.low + 0.5F * node.size;
-            for (int side = 0; side < 9; ++side) {
-                const Vec2 at = centre + node.size * Vec2(side % 3 - 1, side / 3 - 1);
+            for (const auto& [du, dv] : neighbours) {
+                const Vec2 at = centre + node.size * Vec2(du, dv);
                 if (at.x < 0 || at.y < 0 || at.x >= end.x || at.y >= end.y) continue;
                 const Index neighbour = leaf_at(at);
                 if (nodes_[neighbour].size > 2 * node.size && !is_empty(nodes_[neighbour]))
@@ -348,7 +350,8 @@ Rgb mean_texture(const Texture& texture, const std::array<Vec2, 3>& corners) {
     for (int i = 0; i < side; ++i) {
         for (int j = 0; j < 2 * (side - i) - 1; ++j) {
             const float a = (static_cast<float>(i) + (j % 2 == 0 ? 1.0F : 2.0F) / 3.0F) / side;
-            const float b = (static_cast<float>(j / 2) + (j % 2 == 0 ? 1.0F : 2.0F) / 3.0F) / side;
+            const int row = j / 2;
+            const float b = (static_cast<float>(row) + (j % 2 == 0 ? 1.0F : 2.0F) / 3.0F) / side;
             sum += texture.at((1 - a - b) * corners[0] + a * corners[1] + b * corners[2]);
         }
     }
