@@ -1,6 +1,7 @@
 #include "solver/formfactor/static_cache.h"
 
 #include <random>
+#include <unistd.h>
 
 #include <gmock/gmock.h>
 
@@ -33,7 +34,9 @@ class StaticCache : public ::testing::Test {
     }
     [[nodiscard]] std::filesystem::path file() const { return folder_ / (key_.hex() + ".lines"); }
 
-    std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) / "afterglow_static_cache";
+    // Tests may run at the same time, each in a process of its own.
+    std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) /
+                                    ("afterglow_static_cache_" + std::to_string(::getpid()));
     LinedWorld lined_;
     Hash128 key_;
     StaticLines lines_;
@@ -83,11 +86,8 @@ TEST_F(StaticCache, AnotherSceneHasAnotherKey) {
 }
 
 TEST_F(StaticCache, AFolderThatCannotBeMadeIsAnError) {
-    write_file(std::filesystem::path(::testing::TempDir()) / "afterglow_not_a_folder", "x");
-    EXPECT_THROW(
-        save_static_lines(std::filesystem::path(::testing::TempDir()) / "afterglow_not_a_folder" / "cache",
-                          key_, lines_),
-        Error);
+    write_file(folder_, "a file is in the way");
+    EXPECT_THROW(save_static_lines(folder_ / "cache", key_, lines_), Error);
 }
 
 }  // namespace
