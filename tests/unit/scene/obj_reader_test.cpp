@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <unistd.h>
 
 #include <gmock/gmock.h>
 
@@ -145,7 +146,8 @@ TEST(ReadObj, NamesTheLineOfALibraryThatCannotBeRead) {
 }
 
 TEST(LoadScene, OfAnObjReadsNothingOutsideItsFolder) {
-    const auto folder = std::filesystem::path(testing::TempDir()) / "obj_reader_test";
+    const auto folder =
+        std::filesystem::path(testing::TempDir()) / ("obj_reader_test_" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder / "inner");
     const auto put = [&](const char* name, const std::string& text) {
         std::ofstream(folder / name, std::ios::binary) << text;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <unistd.h>
 
 #include <gmock/gmock.h>
 
@@ -148,7 +149,8 @@ TEST(Sequence, AStopLeavesTheStateUsable) {
 TEST(Sequence, ASecondJobOnTheSameFurnitureSkipsTheStaticPass) {
     const Context context(2);
     SequenceConfig config = quick();
-    config.cache_folder = std::filesystem::path(::testing::TempDir()) / "afterglow_sequence_cache";
+    config.cache_folder = std::filesystem::path(::testing::TempDir()) /
+                          ("afterglow_sequence_cache_" + std::to_string(::getpid()));
     std::filesystem::remove_all(config.cache_folder);
     std::vector<Picture> pictures;
     for (const bool cached : {false, true}) {
