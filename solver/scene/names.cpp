@@ -47,6 +47,7 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& na
                      [](const auto& a, const auto& b) { return a.first < b.first; });
     if (near.empty()) return "; there are " + list_of(names) + (names.size() > shown ? " and others" : "");
     std::vector<std::string> likely;
+    likely.reserve(near.size());
     for (auto& [distance, other] : near) likely.push_back(std::move(other));
     return "; did you mean " + list_of(likely) + "?";
 }

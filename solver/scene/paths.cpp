@@ -100,7 +100,7 @@ class TrackAdder {
 
     /// The keys of a property that one list may set only once for a target.
     std::optional<JsonView> once(const Entry& entry, std::string_view property, Index target) {
-        const auto keys = entry.find(property);
+        auto keys = entry.find(property);
         if (keys && !seen_.emplace(entry.subject, property, target).second)
             keys->fail("is given a second time for the same target");
         return keys;
