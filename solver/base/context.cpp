@@ -4,21 +4,19 @@
 #include <thread>
 #include <utility>
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include "solver/base/error.h"
+#include "solver/base/threads.h"
 
 namespace afterglow {
 
 struct Context::Shared {
-    tbb::task_arena arena;
+    Threads threads;
     std::stop_token stop;
     ProgressSink sink;
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 
-    Shared(int threads, std::stop_token token, ProgressSink progress)
-        : arena(threads), stop(std::move(token)), sink(std::move(progress)) {}
+    Shared(int count, std::stop_token token, ProgressSink progress)
+        : threads(count), stop(std::move(token)), sink(std::move(progress)) {}
 };
 
 namespace {
@@ -32,7 +30,7 @@ Context::Context(int threads, std::stop_token stop, ProgressSink sink)
     : shared_(std::make_shared<Shared>(resolve_threads(threads), std::move(stop), std::move(sink))) {}
 
 int Context::threads() const {
-    return shared_->arena.max_concurrency();
+    return shared_->threads.count();
 }
 
 void Context::check_stop() const {
@@ -67,7 +65,7 @@ void Context::for_chunks(std::size_t count, std::size_t chunk,
         run_chunk(0);
         return;
     }
-    shared_->arena.execute([&] { tbb::parallel_for(std::size_t{0}, chunks, run_chunk); });
+    shared_->threads.for_each(chunks, run_chunk);
 }
 
 }  // namespace afterglow

@@ -14,7 +14,7 @@ LONGEST_FILE = 400
 FOREIGN = {
     r"embree3/": ["solver/visibility/", "tests/"],
     r"OpenImageIO/": ["solver/base/pixels.cpp"],
-    r"tbb/|oneapi/": ["solver/base/context.cpp"],
+    r"tbb/|oneapi/": ["solver/base/threads.cpp"],
     r"glm/": ["solver/base/math.h"],
     r"nlohmann/": ["solver/base/json.h", "one of client/"],
     r"xxhash\.h": ["one of solver/base/"],
