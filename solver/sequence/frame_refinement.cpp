@@ -1,9 +1,9 @@
 #include "solver/sequence/frame_refinement.h"
 
+#include "solver/base/stopwatch.h"
 #include "solver/radiosity/ambient.h"
 #include "solver/sequence/prepare.h"
 #include "solver/sequence/quality.h"
-#include "solver/sequence/stopwatch.h"
 
 namespace afterglow {
 

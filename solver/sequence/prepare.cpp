@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/base/stopwatch.h"
 #include "solver/formfactor/static_cache.h"
 #include "solver/sequence/quality.h"
-#include "solver/sequence/stopwatch.h"
 #include "solver/visibility/coarseness.h"
 #include "solver/visibility/reach.h"
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "solver/base/stopwatch.h"
 #include "solver/image/tone_map.h"
 #include "solver/sequence/frame_refinement.h"
 #include "solver/sequence/prepare.h"
-#include "solver/sequence/stopwatch.h"
 
 namespace afterglow {
 

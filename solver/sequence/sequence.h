@@ -8,12 +8,11 @@
 
 #include "solver/base/context.h"
 #include "solver/base/pixels.h"
+#include "solver/base/stopwatch.h"
 #include "solver/scene/world.h"
 #include "solver/sequence/config.h"
 
 namespace afterglow {
-
-using Milliseconds = std::chrono::duration<double, std::milli>;
 
 /// What one frame cost and how good it is (the `frames` entries of a report).
 struct FrameStatistics {

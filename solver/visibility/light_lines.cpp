@@ -71,15 +71,21 @@ Index switch_off_dark(RayPacket& rays, const std::array<float, 16>& contribution
     return alive;
 }
 
-}  // namespace
+/// How one sample of a block is traced.
+enum class Trace {
+    nothing,          ///< not at all: what is known stands
+    static_geometry,  ///< against the furniture
+    everything,       ///< against furniture and actors
+    over_background,  ///< against the actors only, where the furniture leaves it open
+};
 
-std::uint64_t trace_light_lines(const LightLines& light_lines, const SightLines& lines, const PatchMesh& mesh,
-                                const RayCaster& caster, Scope scope, std::vector<float>& unblocked,
-                                const Context& context) {
+/// Traces the samples of blocks [0, blocks) as `how(block, lamp patch)` says.
+template <class How>
+std::uint64_t trace_samples(const LightLines& light_lines, const SightLines& lines, const RayCaster& caster,
+                            std::size_t blocks, std::vector<float>& unblocked, const Context& context,
+                            const How& how) {
     std::atomic<std::uint64_t> traced = 0;
     const Index per_patch = light_lines.lines_per_patch();
-    const std::size_t blocks =
-        scope == Scope::static_geometry ? lines.static_blocks() : lines.blocks().size();
     context.for_chunks(per_patch > 0 ? blocks : 0, 4, [&](std::size_t begin, std::size_t end) {
         RayPacket rays;
         std::array<float, 16> contribution;
@@ -87,13 +93,15 @@ std::uint64_t trace_light_lines(const LightLines& light_lines, const SightLines&
         for (std::size_t b = begin; b < end; ++b) {
             const PatchBlock& block = lines.blocks()[b];
             for (Index k = 0; k < per_patch; ++k) {
+                const Trace trace = how(block, light_lines.lamp_patch(b, k));
+                if (trace == Trace::nothing) continue;
                 light_lines.rays(b, k, caster, rays, contribution);
                 float* const result = &unblocked[light_lines.line(block, k, 0)];
-                const bool background_known = scope == Scope::actors && block.body == furniture &&
-                                              mesh.body[light_lines.lamp_patch(b, k)] == furniture;
-                if (background_known) std::copy_n(result, block.count, contribution.begin());
+                if (trace == Trace::over_background) std::copy_n(result, block.count, contribution.begin());
                 const Index alive = switch_off_dark(rays, contribution);
-                const Scope against = scope == Scope::actors && !background_known ? Scope::everything : scope;
+                const Scope against = trace == Trace::static_geometry   ? Scope::static_geometry
+                                      : trace == Trace::over_background ? Scope::actors
+                                                                        : Scope::everything;
                 const std::uint32_t blocked = alive == 0 ? 0 : caster.occluded(rays, against);
                 for (Index lane = 0; lane < block.count; ++lane)
                     result[lane] = ((blocked >> lane) & 1U) != 0 ? 0.0F : contribution[lane];
@@ -103,6 +111,32 @@ std::uint64_t trace_light_lines(const LightLines& light_lines, const SightLines&
         traced += count;
     });
     return traced;
+}
+
+}  // namespace
+
+std::uint64_t trace_light_lines(const LightLines& light_lines, const SightLines& lines, const PatchMesh& mesh,
+                                const RayCaster& caster, Scope scope, std::vector<float>& unblocked,
+                                const Context& context) {
+    const bool static_only = scope == Scope::static_geometry;
+    return trace_samples(
+        light_lines, lines, caster, static_only ? lines.static_blocks() : lines.blocks().size(), unblocked,
+        context, [&](const PatchBlock& block, Index lamp) {
+            if (static_only) return Trace::static_geometry;
+            const bool known = block.body == furniture && mesh.body[lamp] == furniture;
+            return scope == Scope::actors && known ? Trace::over_background : Trace::everything;
+        });
+}
+
+std::uint64_t trace_moving_light_lines(const LightLines& light_lines, const SightLines& lines,
+                                       const PatchMesh& mesh, const RayCaster& caster,
+                                       std::vector<float>& unblocked, const Context& context) {
+    return trace_samples(light_lines, lines, caster, lines.blocks().size(), unblocked, context,
+                         [&](const PatchBlock& block, Index lamp) {
+                             return block.body == furniture && mesh.body[lamp] == furniture
+                                        ? Trace::nothing
+                                        : Trace::everything;
+                         });
 }
 
 }  // namespace afterglow

@@ -55,4 +55,10 @@ std::uint64_t trace_light_lines(const LightLines& light_lines, const SightLines&
                                 const RayCaster& caster, Scope scope, std::vector<float>& unblocked,
                                 const Context& context);
 
+/// Traces anew, against everything, the light lines that move from frame to frame: those of actors' patches,
+/// and those that end on an actor's lamp. Returns the number of rays. Errors: cancelled.
+std::uint64_t trace_moving_light_lines(const LightLines& light_lines, const SightLines& lines,
+                                       const PatchMesh& mesh, const RayCaster& caster,
+                                       std::vector<float>& unblocked, const Context& context);
+
 }  // namespace afterglow

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "solver/base/stopwatch.h"
+#include "solver/visibility/motion.h"
 #include "solver/visibility/static_pass.h"
 
 namespace afterglow {
@@ -21,6 +24,13 @@ struct LineScene {
     const LightLines& light;
     const RayCaster& caster;
     const StaticLines& background;  ///< traced as far as asked for; used by strategies that say they need it
+    int frame = 0;                  ///< which frame the poses stand for
+};
+
+/// What a strategy did for a range of frames at once, when the first of them was asked for.
+struct WorkAhead {
+    FrameRange frames;
+    Milliseconds time{};
 };
 
 /// How a frame learns what its lines see. All strategies give the same answers; they differ in work.
@@ -34,6 +44,8 @@ class VisibilityStrategy {
     /// the number of rays. Errors: cancelled.
     virtual std::uint64_t update(const LineScene& scene, const DirectionRange& range, VisibleLines& visible,
                                  const Context& context) = 0;
+    /// Window by window, in order of time spent. Not part of any one frame's cost.
+    [[nodiscard]] virtual std::span<const WorkAhead> work_ahead() const { return {}; }
 };
 
 /// Static and moving geometry traced anew: the yardstick and the oracle.

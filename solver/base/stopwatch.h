@@ -2,9 +2,9 @@
 
 #include <chrono>
 
-#include "solver/sequence/sequence.h"
-
 namespace afterglow {
+
+using Milliseconds = std::chrono::duration<double, std::milli>;
 
 /// Time since it was made.
 class Stopwatch {

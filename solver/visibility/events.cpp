@@ -1,0 +1,147 @@
+#include "solver/visibility/events.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "solver/base/error.h"
+#include "solver/visibility/line_events.h"
+
+namespace afterglow {
+
+namespace {
+
+/// The events of some frames, by the ranges of directions in which they were asked for.
+struct Window {
+    SweptActors actors;
+    std::vector<LineEvents> sight;
+    LineEvents light;
+    Index directions = 0;  ///< of every patch; 0: the light lines are missing, too
+};
+
+class Events : public VisibilityStrategy {
+  public:
+    Events(const World& world, const FrameClock& clock, const EventsConfig& config)
+        : world_(world), trees_(make_actor_trees(world)), clock_(clock), config_(config) {
+        if (config.frames_per_window < 1 || config.frames_per_window > 4096)
+            throw Error(ErrorKind::invalid_input, "frames_per_window", "must be 1 to 4096");
+    }
+
+    [[nodiscard]] bool needs_background() const override { return true; }
+    [[nodiscard]] std::span<const WorkAhead> work_ahead() const override { return work_ahead_; }
+
+    std::uint64_t update(const LineScene& scene, const DirectionRange& range, VisibleLines& visible,
+                         const Context& context) override {
+        if (!window_ || !window_->actors.frames().contains(scene.frame))
+            open_window(scene.frame);
+        else if (shown_ && *shown_ != scene.frame)
+            move_to(scene, visible);
+        if (range.last > window_->directions) extend(scene, range.last, visible, context);
+        shown_ = scene.frame;
+        return trace_actors_lines(scene, range, visible, context);
+    }
+
+  private:
+    /// Windows begin at multiples of their length, so that neighbouring frames share one from either side.
+    void open_window(int frame) {
+        const int first = frame - frame % config_.frames_per_window;
+        window_.emplace(Window{
+            SweptActors(world_, trees_, clock_, {first, first + config_.frames_per_window - 1}), {}, {}, 0});
+        shown_.reset();
+    }
+
+    /// Frame by frame from the one shown to the one asked for.
+    void move_to(const LineScene& scene, VisibleLines& visible) {
+        const int first = window_->actors.frames().first;
+        for (int f = *shown_ + 1; f <= scene.frame; ++f) apply(f - first, scene, visible);
+        for (int f = *shown_; f > scene.frame; --f) revert(f - first, scene, visible);
+    }
+
+    void apply(int f, const LineScene& scene, VisibleLines& visible) const {
+        for (const LineEvents& events : window_->sight)
+            for (const LineEvent& event : events.at(f)) visible.patch[event.line] = event.to;
+        for (const LineEvent& event : window_->light.at(f)) show_lamp(event.line, event.to, scene, visible);
+    }
+    void revert(int f, const LineScene& scene, VisibleLines& visible) const {
+        for (const LineEvents& events : window_->sight)
+            for (const LineEvent& event : events.at(f)) visible.patch[event.line] = event.from;
+        for (const LineEvent& event : window_->light.at(f)) show_lamp(event.line, event.from, scene, visible);
+    }
+    static void show_lamp(Index line, Index state, const LineScene& scene, VisibleLines& visible) {
+        visible.light_contribution[line] =
+            state == lamp_open ? scene.background.light_contribution[line] : 0.0F;
+    }
+
+    /// Finds the events of directions up to `last` and shows those directions at the frame asked for.
+    void extend(const LineScene& scene, Index last, VisibleLines& visible, const Context& context) {
+        const Stopwatch watch;
+        // Left for good only once all is done: a stop in the middle leaves no half-known window.
+        Window window = std::move(*window_);
+        window_.reset();
+        const EventScene events{world_,           scene.mesh,    scene.sight, scene.light,
+                                scene.background, window.actors, scene.caster};
+        const bool first_time = window.directions == 0;
+        const DirectionRange range{window.directions, last};
+        if (first_time) window.light = find_light_events(events, context);
+        window.sight.push_back(find_line_events(events, range, context));
+        window.directions = last;
+
+        show_background(scene, range, visible);
+        if (first_time)
+            std::copy(scene.background.light_contribution.begin(), scene.background.light_contribution.end(),
+                      visible.light_contribution.begin());
+        const FrameRange frames = window.actors.frames();
+        for (int f = 0; f <= scene.frame - frames.first; ++f) {
+            for (const LineEvent& event : window.sight.back().at(f)) visible.patch[event.line] = event.to;
+            if (!first_time) continue;
+            for (const LineEvent& event : window.light.at(f)) show_lamp(event.line, event.to, scene, visible);
+        }
+        window_.emplace(std::move(window));
+        note(frames, watch.elapsed());
+    }
+
+    static void show_background(const LineScene& scene, const DirectionRange& range, VisibleLines& visible) {
+        for (std::size_t b = 0; b < scene.sight.static_blocks(); ++b) {
+            const PatchBlock& block = scene.sight.blocks()[b];
+            const auto first = static_cast<std::ptrdiff_t>(scene.sight.line(block, range.first, 0));
+            const auto last = static_cast<std::ptrdiff_t>(scene.sight.line(block, range.last, 0));
+            std::copy(scene.background.background.patch.begin() + first,
+                      scene.background.background.patch.begin() + last, visible.patch.begin() + first);
+        }
+    }
+
+    void note(const FrameRange& frames, Milliseconds time) {
+        if (work_ahead_.empty() || work_ahead_.back().frames != frames)
+            work_ahead_.push_back({frames, time});
+        else
+            work_ahead_.back().time += time;
+    }
+
+    static std::uint64_t trace_actors_lines(const LineScene& scene, const DirectionRange& range,
+                                            VisibleLines& visible, const Context& context) {
+        const LineRange lines{scene.sight.static_blocks(), scene.sight.blocks().size(), range.first,
+                              range.last};
+        std::uint64_t rays = trace_lines(scene.sight, scene.mesh, scene.caster, Scope::everything, lines,
+                                         LineSinks{visible.patch, {}}, context);
+        if (range.first == 0)
+            rays += trace_moving_light_lines(scene.light, scene.sight, scene.mesh, scene.caster,
+                                             visible.light_contribution, context);
+        return rays;
+    }
+
+    const World& world_;
+    ActorTrees trees_;
+    FrameClock clock_;
+    EventsConfig config_;
+    std::optional<Window> window_;
+    std::optional<int> shown_;  ///< the frame that all known directions are at
+    std::vector<WorkAhead> work_ahead_;
+};
+
+}  // namespace
+
+std::unique_ptr<VisibilityStrategy> make_events(const World& world, const FrameClock& clock,
+                                                const EventsConfig& config) {
+    return std::make_unique<Events>(world, clock, config);
+}
+
+}  // namespace afterglow

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "solver/visibility/motion.h"
+#include "solver/visibility/time_buffer.h"
+#include "solver/visibility/triangle_tree.h"
+
+namespace afterglow {
+
+/// One body that moves by the same step from frame to frame and does not turn.
+struct MovingFaces {
+    const Body& body;
+    const TriangleTree& tree;
+    Index body_index = 0;
+    Pose first;         ///< in its first frame
+    Vec3 step_m{0};     ///< from frame to frame
+    FrameRange frames;  ///< as the time buffer counts them
+};
+
+/// Puts every face of the body that a ray meets into the buffer, for all its frames at once. Exact up to
+/// rounding; two faces that share an edge leave no gap between them. Thread-safety: pure but for the buffer.
+void trace_moving_faces(const MovingFaces& faces, const RayPacket& rays, TimeBuffer& buffer);
+
+}  // namespace afterglow

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <vector>
+
+#include "solver/visibility/motion.h"
+#include "solver/visibility/time_buffer.h"
+#include "solver/visibility/triangle_tree.h"
+
+namespace afterglow {
+
+/// A tree over the faces of every body; the furniture's is empty.
+using ActorTrees = std::vector<TriangleTree>;
+ActorTrees make_actor_trees(const World& world);
+
+/// The actors as they move over some consecutive frames, ready to be met by rays that stand still. A ray and
+/// a direction of motion span a plane; a face that moves without turning cuts it in a line segment, so that
+/// which frames see the face, and how far off it is in each, comes from two edges: no frame is looked at
+/// alone, and nothing between frames is missed that a frame shows. A turning actor is placed anew in each
+/// frame in which a ball around it touches a ray. Thread-safety: const calls are pure.
+class SweptActors {
+  public:
+    /// The world and its trees must outlive this.
+    SweptActors(const World& world, const ActorTrees& trees, const FrameClock& clock,
+                const FrameRange& frames);
+
+    [[nodiscard]] const FrameRange& frames() const { return frames_; }
+
+    /// Where an actor stands in a frame, counted from the first.
+    [[nodiscard]] const Pose& pose(Index body, int frame) const {
+        return poses_[body][static_cast<std::size_t>(frame)];
+    }
+
+    /// Whether an actor goes on from a frame to the next as it came there: at the same velocity, without
+    /// turning.
+    [[nodiscard]] bool is_steady_after(Index body, int frame) const {
+        return steady_after_[body][static_cast<std::size_t>(frame)] != 0;
+    }
+
+    /// Puts every face that a ray meets before its `far` into the buffer, which has been cleared for these
+    /// rays and has as many frames.
+    void trace(const RayPacket& rays, TimeBuffer& buffer) const;
+
+  private:
+    struct Ball {
+        Vec3 centre{0};
+        float radius_m = 0;
+    };
+    /// One actor over frames in which its motion is steady.
+    struct Sweep {
+        Index body = 0;
+        SteadyFrames part;
+        std::vector<Ball> balls;  ///< turning ones: a heap over the frames, the last level one ball a frame
+    };
+    [[nodiscard]] std::vector<Ball> balls_of(const SteadyFrames& part, Index body) const;
+    void trace_turning(const Sweep& sweep, std::size_t ball, const RayPacket& rays, TimeBuffer& buffer) const;
+
+    const World* world_;
+    const ActorTrees* trees_;
+    FrameRange frames_;
+    std::vector<std::vector<Pose>> poses_;         ///< [body][frame]; empty for the furniture
+    std::vector<std::vector<char>> steady_after_;  ///< [body][frame]; empty for the furniture
+    std::vector<Sweep> sweeps_;
+};
+
+}  // namespace afterglow

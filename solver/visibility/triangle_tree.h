@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "solver/scene/world.h"
+
+namespace afterglow {
+
+/// A tree of boxes over the triangles of one body, in the body's frame: what asks which faces something
+/// passes need look at a few only. Thread-safety: const use is pure.
+struct TriangleTree {
+    struct Node {
+        Vec3 centre{0}, half{0};  ///< of the box
+        Index first = 0;          ///< of its entries in `order` if it is a leaf, else of its two children
+        Index count = 0;          ///< entries of a leaf; 0: not a leaf
+    };
+    std::vector<Node> nodes;   ///< the root first; empty for a body without triangles
+    std::vector<Index> order;  ///< triangles, those of a leaf together
+};
+
+/// Builds it by halving at the median along the longest axis of the centres. Thread-safety: pure.
+TriangleTree make_triangle_tree(const Body& body);
+
+}  // namespace afterglow

@@ -1,0 +1,184 @@
+// What each visibility strategy costs on the living room: static pass, work ahead, then frame by frame; all
+// in one run. Prints one table. Usage: visibility_strategies [frames per second] [patch size, m] [lines a
+// patch] [threads]
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+
+#include "solver/base/stopwatch.h"
+#include "solver/scene/load.h"
+#include "solver/visibility/events.h"
+#include "solver/visibility/line_events.h"
+#include "solver/visibility/reach.h"
+
+namespace afterglow {
+namespace {
+
+constexpr int window = 64;
+
+struct Room {
+    World world;
+    RayCaster caster;
+    PatchMesh mesh;
+    Lamps lamps;
+    SightLines sight;
+    LightLines light;
+    StaticLines background;
+
+    Room(float patch_size_m, Index lines)
+        : world(assemble(load_scene(AFTERGLOW_TEST_DATA "/living-room.glb"))),
+          caster(world),
+          mesh(meshed(patch_size_m)),
+          lamps(find_lamps(world, mesh)),
+          sight(mesh, world, lines, 1),
+          light(mesh, sight, lamps, 64, 2),
+          background(make_static_lines(mesh, sight, light)) {}
+
+    PatchMesh meshed(float patch_size_m) {
+        Surfaces surfaces = find_surfaces(world);
+        const SideMask reached = reachable_sides(world, surfaces, caster, {}, Context());
+        return make_patches(world, std::move(surfaces), reached, {.patch_size_m = patch_size_m});
+    }
+    [[nodiscard]] std::size_t static_lines() const {
+        return std::size_t{mesh.static_size()} * sight.lines_per_patch();
+    }
+};
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+double ms_of(const std::function<void()>& work) {
+    const Stopwatch watch;
+    work();
+    return watch.elapsed().count();
+}
+
+struct Row {
+    const char* name;
+    double ahead_ms = 0;
+    std::vector<double> frame_ms;
+};
+
+/// Sight lines of static patches only, which is where the strategies differ.
+void compare_static_lines(Room& room, const FrameClock& clock, int frames, const Context& context) {
+    const Index lines = room.sight.lines_per_patch();
+    Row retrace{"retrace"}, back_buffer{"back-buffer"}, events{"events"};
+    const double static_ms = ms_of([&] {
+        extend_static_lines(room.background, room.mesh, room.sight, room.light, room.caster, lines, context);
+    });
+    std::vector<Index> anew(std::size_t{room.mesh.size()} * lines), over(anew), shown(anew), before;
+    const ActorTrees trees = make_actor_trees(room.world);
+    std::uint64_t changes = 0, k = 0, events_applied = 0, different = 0, lines_that_change = 0;
+    std::vector<char> cut(room.static_lines(), 0);
+    LineEvents found;
+    for (int f = 0; f < frames; ++f) {
+        if (f % window == 0) {
+            events.ahead_ms += ms_of([&] {
+                const SweptActors actors(room.world, trees, clock, {f, f + window - 1});
+                const EventScene scene{room.world,      room.mesh, room.sight, room.light,
+                                       room.background, actors,    room.caster};
+                found = find_line_events(scene, {0, lines}, context);
+            });
+            std::copy(room.background.background.patch.begin(), room.background.background.patch.end(),
+                      shown.begin());
+            for (const LineEvent& event : found.list) cut[event.line] = 1;
+        }
+        events.frame_ms.push_back(ms_of([&] {
+            for (const LineEvent& event : found.at(f % window)) shown[event.line] = event.to;
+        }));
+        if (f % window > 0) events_applied += found.at(f % window).size();
+        // The others are too slow to run at each of many frames.
+        const bool sampled = f % std::max(1, frames / 24) == 1;
+        if (!sampled) {
+            before = {};
+            if ((f + 1) % std::max(1, frames / 24) != 1) continue;
+        }
+        room.caster.set_poses(poses_at(room.world, clock.time_of(f)));
+        const double retrace_ms = ms_of([&] {
+            trace_lines(room.sight, room.mesh, room.caster, Scope::everything,
+                        {0, room.sight.static_blocks(), 0, lines}, {anew, {}}, context);
+        });
+        if (!sampled) {
+            before = anew;
+            continue;
+        }
+        retrace.frame_ms.push_back(retrace_ms);
+        back_buffer.frame_ms.push_back(ms_of([&] {
+            trace_over_background(room.sight, room.mesh, room.caster, room.background.background, {0, lines},
+                                  over, context);
+        }));
+        for (std::size_t line = 0; line < room.static_lines(); ++line) {
+            changes += anew[line] != before[line] ? 1U : 0U;
+            different += anew[line] != shown[line] ? 1U : 0U;
+        }
+        if (f % window > 0) {
+            k += found.at(f % window).size();
+        }
+    }
+    lines_that_change = static_cast<std::uint64_t>(std::count(cut.begin(), cut.end(), 1));
+    const double per_frame = median(retrace.frame_ms);
+    std::printf("static pass %.0f ms; %zu lines of static patches, %.1f %% change at some time\n", static_ms,
+                room.static_lines(),
+                100.0 * static_cast<double>(lines_that_change) / static_cast<double>(room.static_lines()));
+    std::printf(
+        "at %zu sampled frames: %llu changes by retracing, %llu by events; %llu of the lines differ\n",
+        retrace.frame_ms.size(), static_cast<unsigned long long>(changes), static_cast<unsigned long long>(k),
+        static_cast<unsigned long long>(different));
+    std::printf("%-12s %12s %12s %10s %14s\n", "strategy", "ahead, ms", "frame, ms", "ratio", "whole, ratio");
+    for (const Row* row : {&retrace, &back_buffer, &events}) {
+        const double frame_ms = median(row->frame_ms);
+        const double fixed = row == &retrace ? 0 : static_ms + row->ahead_ms;
+        std::printf("%-12s %12.1f %12.3f %10.1f %14.1f\n", row->name, row->ahead_ms, frame_ms,
+                    per_frame / frame_ms, per_frame * frames / (fixed + frame_ms * frames));
+    }
+    std::printf("events in all: %.2f M\n", static_cast<double>(events_applied) * 1e-6);
+}
+
+/// Everything a frame looks along: actors' own lines and light lines, too.
+void compare_whole_frames(Room& room, const FrameClock& clock, int frames, const Context& context) {
+    VisibleLines visible = make_visible_lines(room.mesh, room.sight, room.light);
+    const auto events = make_events(room.world, clock, {window}), back_buffer = make_back_buffer(),
+               retrace = make_retrace();
+    Row rows[3] = {{"retrace"}, {"back-buffer"}, {"events"}};
+    VisibilityStrategy* strategies[3] = {retrace.get(), back_buffer.get(), events.get()};
+    for (int s = 0; s < 3; ++s) {
+        VisibleLines seen = visible;
+        for (int f = 0; f < frames; f += s == 2 ? 1 : std::max(1, frames / 24)) {
+            room.caster.set_poses(poses_at(room.world, clock.time_of(f)));
+            const LineScene scene{room.mesh, room.sight, room.light, room.caster, room.background, f};
+            rows[s].frame_ms.push_back(ms_of([&] {
+                strategies[s]->update(scene, {0, room.sight.lines_per_patch()}, seen, context);
+            }));
+        }
+    }
+    for (const WorkAhead& work : events->work_ahead()) rows[2].ahead_ms += work.time.count();
+    std::printf("\nwith light lines and actors' own lines (%.1f %% of the patches)\n",
+                100.0 - 100.0 * room.mesh.static_size() / room.mesh.size());
+    for (const Row& row : rows)
+        std::printf("%-12s %12.1f %12.3f %10.1f\n", row.name, row.ahead_ms, median(row.frame_ms),
+                    median(rows[0].frame_ms) / median(row.frame_ms));
+}
+
+}  // namespace
+}  // namespace afterglow
+
+int main(int count, char** arguments) {
+    using namespace afterglow;
+    const auto option = [&](int k, double otherwise) {
+        return count > k ? std::atof(arguments[k]) : otherwise;
+    };
+    const FrameClock clock{option(1, 24)};
+    const Context context(static_cast<int>(option(4, 0)));
+    Room room(static_cast<float>(option(2, 0.14)), static_cast<Index>(option(3, 512)));
+    const int frames = static_cast<int>(room.world.duration_s * clock.frames_per_second);
+    std::printf("living-room, %d frames, %u patches x %u lines, %d threads\n", frames, room.mesh.size(),
+                room.sight.lines_per_patch(), context.threads());
+    compare_static_lines(room, clock, frames, context);
+    compare_whole_frames(room, clock, frames, context);
+}

@@ -1,0 +1,180 @@
+#include "solver/visibility/events.h"
+
+#include <algorithm>
+#include <random>
+
+#include <gmock/gmock.h>
+
+#include "tests/support/lined_world.h"
+
+namespace afterglow {
+namespace {
+
+using testing::LinedWorld;
+using testing::Turning;
+
+constexpr FrameClock clock_of_tests{10};
+
+StaticLines background_of(const LinedWorld& lined) {
+    StaticLines lines = make_static_lines(lined.mesh, lined.sight, lined.light);
+    extend_static_lines(lines, lined.mesh, lined.sight, lined.light, lined.caster,
+                        lined.sight.lines_per_patch(), Context(2));
+    return lines;
+}
+
+/// A world with its lines, and a strategy that is asked for frames.
+struct Watched {
+    LinedWorld lined;
+    StaticLines background;
+    std::unique_ptr<VisibilityStrategy> strategy;
+    VisibleLines visible;
+
+    explicit Watched(World world, const EventsConfig& config = {})
+        : lined(std::move(world), 0.4F, 32),
+          background(background_of(lined)),
+          strategy(make_events(lined.world, clock_of_tests, config)),
+          visible(make_visible_lines(lined.mesh, lined.sight, lined.light)) {}
+
+    void show(int frame, const DirectionRange& range = {0, 32}, const Context& context = Context(2)) {
+        lined.caster.set_poses(poses_at(lined.world, clock_of_tests.time_of(frame)));
+        strategy->update({lined.mesh, lined.sight, lined.light, lined.caster, background, frame}, range,
+                         visible, context);
+    }
+    VisibleLines retraced(int frame) {
+        lined.caster.set_poses(poses_at(lined.world, clock_of_tests.time_of(frame)));
+        VisibleLines anew = make_visible_lines(lined.mesh, lined.sight, lined.light);
+        make_retrace()->update({lined.mesh, lined.sight, lined.light, lined.caster, background, frame},
+                               {0, 32}, anew, Context(2));
+        return anew;
+    }
+};
+
+struct Disagreement {
+    std::size_t lines = 0, different = 0;
+    void add(const VisibleLines& a, const VisibleLines& b) {
+        lines += a.patch.size() + a.light_contribution.size();
+        for (std::size_t k = 0; k < a.patch.size(); ++k) different += a.patch[k] != b.patch[k] ? 1U : 0U;
+        for (std::size_t k = 0; k < a.light_contribution.size(); ++k)
+            different += a.light_contribution[k] != b.light_contribution[k] ? 1U : 0U;
+    }
+};
+
+/// The room with actors on random paths, through walls and each other, some thin and fast.
+World crowded_room(unsigned seed, int actors, Turning turning) {
+    World world = testing::small_room();
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> size(0.02F, 0.5F);
+    Box near_room;
+    near_room.add(Vec3(-1));
+    near_room.add(Vec3(5, 3.5F, 6));
+    for (int k = 0; k < actors; ++k)
+        testing::add_actor(world, "actor", Vec3(size(random), size(random), size(random)), 0,
+                           testing::random_path(random, near_room, 1 + k % 4, turning));
+    return world;
+}
+
+TEST(Events, ShowWhatRetraceShowsInEveryFrame) {
+    Disagreement found;
+    for (const Turning turning : {Turning::no, Turning::yes}) {
+        for (const int actors : {1, 4, 12}) {
+            Watched watched(crowded_room(static_cast<unsigned>(actors), actors, turning));
+            for (int frame = 0; frame < 30; frame += 1 + actors / 4) {
+                watched.show(frame);
+                found.add(watched.visible, watched.retraced(frame));
+            }
+        }
+    }
+    // Only ties may differ: lines through an edge, and faces that lie in another.
+    EXPECT_LE(found.different, found.lines / 10'000);
+    std::printf("%zu of %zu lines differ\n", found.different, found.lines);
+}
+
+TEST(Events, DoNotDependOnTheOrderOfFrames) {
+    const World world = crowded_room(5, 4, Turning::yes);
+    Watched forward(world), scattered(world, {8});
+    std::vector<VisibleLines> expected;
+    for (int frame = 0; frame < 24; ++frame) {
+        forward.show(frame);
+        expected.push_back(forward.visible);
+    }
+    std::vector<int> order{23, 22, 21, 3, 4, 5, 4, 3, 16, 15, 8, 7, 0, 20, 20, 1};
+    for (const int frame : order) {
+        scattered.show(frame);
+        EXPECT_EQ(scattered.visible.patch, expected[static_cast<std::size_t>(frame)].patch) << frame;
+        EXPECT_EQ(scattered.visible.light_contribution,
+                  expected[static_cast<std::size_t>(frame)].light_contribution)
+            << frame;
+    }
+}
+
+TEST(Events, DoNotDependOnTheDivisionOfDirectionsOrTheThreads) {
+    const World world = crowded_room(6, 3, Turning::no);
+    Watched whole(world), divided(world);
+    for (const int frame : {3, 4, 9}) {
+        whole.show(frame, {0, 32}, Context(1));
+        if (frame == 3) {
+            divided.show(frame, {0, 5}, Context(3));
+            divided.show(frame, {5, 16}, Context(2));
+        }
+        divided.show(frame, {frame == 3 ? 16U : 0U, 32}, Context(4));
+        EXPECT_EQ(divided.visible.patch, whole.visible.patch);
+        EXPECT_EQ(divided.visible.light_contribution, whole.visible.light_contribution);
+    }
+}
+
+TEST(Events, GoOnAfterAStop) {
+    Watched watched(crowded_room(7, 4, Turning::yes));
+    watched.show(2);
+    std::stop_source stop;
+    stop.request_stop();
+    // Frame 100 lies in another window, whose events must be found.
+    EXPECT_THROW(watched.show(100, {0, 32}, Context(2, stop.get_token())), Error);
+    watched.show(3);
+    Watched fresh(crowded_room(7, 4, Turning::yes));
+    fresh.show(3);
+    EXPECT_EQ(watched.visible.patch, fresh.visible.patch);
+}
+
+TEST(Events, AreNoneWhereNothingMoves) {
+    World world = testing::small_room();
+    world.bodies.resize(1);
+    Watched watched(std::move(world));
+    watched.show(0);
+    watched.show(50);
+    EXPECT_EQ(watched.visible.patch, watched.retraced(50).patch);
+}
+
+TEST(Events, OfAKnotDoNotSurviveIt) {
+    // A box that comes to stand before the lamp on frame 10 exactly, waits, jumps away and comes back turned.
+    World world = testing::small_room();
+    world.bodies.resize(1);
+    const Quat level(1, 0, 0, 0), turned = glm::angleAxis(0.7F, Vec3(0, 1, 0));
+    Path path;
+    path.keys = {{0, {Vec3(0.5F, 1.03F, 1), level}},
+                 {1, {Vec3(2, 2.03F, 2.53F), level}},
+                 {1.5, {Vec3(2, 2.03F, 2.53F), level}},
+                 {1.5, {Vec3(0.5F, 1.03F, 4), turned}},
+                 {2, {Vec3(2, 2.03F, 2.53F), turned}}};
+    testing::add_actor(world, "box", Vec3(0.3F), 0, path);
+    Watched watched(std::move(world), {7});
+    for (int frame = 0; frame < 25; ++frame) {
+        watched.show(frame);
+        Disagreement found;
+        found.add(watched.visible, watched.retraced(frame));
+        EXPECT_LE(found.different, found.lines / 10'000) << frame;
+    }
+}
+
+TEST(Events, OfFarFramesAreFound) {
+    Watched watched(crowded_room(8, 2, Turning::no));
+    watched.show(100'000);
+    EXPECT_EQ(watched.visible.patch, watched.retraced(100'000).patch);
+}
+
+TEST(Events, OfAWindowOfNoFramesAreRefused) {
+    const World world = testing::small_room();
+    EXPECT_THROW(make_events(world, clock_of_tests, {0}), Error);
+}
+
+}  // namespace
+}  // namespace afterglow
