@@ -10,6 +10,9 @@ namespace {
 // Looking at a box costs about as much as looking at a triangle.
 constexpr Index triangles_of_leaf = 4;
 
+// Boxes are a little too large, so that rounding never hides a face that a line just touches.
+constexpr float margin = 1e-6F;
+
 class Builder {
   public:
     explicit Builder(const Body& body) : tree_(), boxes_(body.triangles.size()) {
@@ -33,7 +36,8 @@ class Builder {
             box.add(boxes_[tree_.order[k]]);
             centres.add(boxes_[tree_.order[k]].centre());
         }
-        tree_.nodes[node] = {box.centre(), 0.5F * box.extent(), first, count};
+        const Vec3 largest = glm::max(glm::abs(box.low), glm::abs(box.high));
+        tree_.nodes[node] = {box.centre(), 0.5F * box.extent() + margin * largest, first, count};
         if (count <= triangles_of_leaf) return;
         const Vec3 extent = centres.extent();
         const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;

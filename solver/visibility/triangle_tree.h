@@ -10,7 +10,7 @@ namespace afterglow {
 /// passes need look at a few only. Thread-safety: const use is pure.
 struct TriangleTree {
     struct Node {
-        Vec3 centre{0}, half{0};  ///< of the box
+        Vec3 centre{0}, half{0};  ///< of the box, which is a little larger than need be
         Index first = 0;          ///< of its entries in `order` if it is a leaf, else of its two children
         Index count = 0;          ///< entries of a leaf; 0: not a leaf
     };
