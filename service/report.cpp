@@ -49,6 +49,11 @@ double peak_memory_mb() {
 Json to_json(const Report& report, double peak_rss_mb) {
     Json frames = Json::array();
     for (const FrameStatistics& frame : report.frames) frames.push_back(frame_json(frame));
+    Json ahead = Json::array();
+    for (const WorkAhead& work : report.sequence.work_ahead)
+        ahead.push_back({{"first_frame", work.frames.first},
+                         {"last_frame", work.frames.last},
+                         {"ms", work.time.count()}});
     return {{"scene", report.scene},
             {"method", report.method},
             {"patches", report.sequence.patches},
@@ -57,7 +62,7 @@ Json to_json(const Report& report, double peak_rss_mb) {
             {"rays_per_patch", report.sequence.rays_per_patch},
             {"load_ms", report.load.count()},
             {"static_ms", report.static_pass.count()},
-            {"precompute", Json::array()},  // no method works ahead for later frames yet
+            {"precompute", std::move(ahead)},
             {"peak_rss_mb", peak_rss_mb},
             {"frames", std::move(frames)}};
 }

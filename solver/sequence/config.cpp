@@ -9,10 +9,12 @@ namespace afterglow {
 
 namespace {
 
-constexpr std::array<Method, 2> all_methods{{
+constexpr std::array<Method, 3> all_methods{{
     {"full", Visibility::retrace, Solution::progressive, "everything traced and solved anew at every frame"},
     {"baum86", Visibility::back_buffer, Solution::progressive,
      "static background kept, actors traced, solved anew"},
+    {"events", Visibility::events, Solution::progressive,
+     "what lines come to see is found ahead, solved anew"},
 }};
 
 template <class Value>
@@ -20,9 +22,10 @@ struct Named {
     std::string_view name;
     Value value;
 };
-constexpr std::array<Named<Visibility>, 2> visibilities{{
+constexpr std::array<Named<Visibility>, 3> visibilities{{
     {"retrace", Visibility::retrace},
     {"back-buffer", Visibility::back_buffer},
+    {"events", Visibility::events},
 }};
 constexpr std::array<Named<Solution>, 1> solutions{{{"progressive", Solution::progressive}}};
 constexpr std::array<Named<Quality>, 3> qualities{{

@@ -13,6 +13,7 @@ namespace afterglow {
 enum class Visibility {
     retrace,      ///< static and moving geometry traced anew: the yardstick
     back_buffer,  ///< Baum et al. 1986: only the actors are traced, up to the static background
+    events,       ///< when each line comes to see something else is found ahead; a frame touches only those
 };
 
 /// How each frame's light is solved.

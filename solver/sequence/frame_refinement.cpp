@@ -7,11 +7,11 @@
 
 namespace afterglow {
 
-FrameRefinement::FrameRefinement(SequenceState::Parts& parts, double time_s)
-    : parts_(parts), time_s_(time_s), lights_(lights_at(parts.world, time_s)) {
-    parts.caster.set_poses(poses_at(parts.world, time_s));
+FrameRefinement::FrameRefinement(SequenceState::Parts& parts, int frame)
+    : parts_(parts), frame_(frame), time_s_(parts.time_of(frame)), lights_(lights_at(parts.world, time_s_)) {
+    parts.caster.set_poses(poses_at(parts.world, time_s_));
     for (Index m = 0; m < parts.world.materials.size(); ++m)
-        materials_.push_back(material_at(parts.world, m, time_s));
+        materials_.push_back(material_at(parts.world, m, time_s_));
     const PatchMesh& mesh = parts.mesh;
     for (Index p = 0; p < mesh.size(); ++p) {
         const Material& material = materials_[mesh.material(p)];
@@ -27,11 +27,12 @@ void FrameRefinement::look(Index directions, VisibilityStrategy& strategy, const
     if (strategy.needs_background())
         static_rays = advance_static_pass(parts_, directions, context.part(0, 0.4));
     const Stopwatch watch;
+    const Milliseconds ahead_before = total(strategy.work_ahead());
     context.report(0.4, "looking along the sight lines");
-    statistics_.rays_traced +=
-        static_rays + strategy.update(parts_.lines(), {directions_, directions}, parts_.visible, context);
+    statistics_.rays_traced += static_rays + strategy.update(parts_.lines(frame_), {directions_, directions},
+                                                             parts_.visible, context);
     directions_ = directions;
-    statistics_.visibility += watch.elapsed();
+    statistics_.visibility += watch.elapsed() - (total(strategy.work_ahead()) - ahead_before);
     compile(context);
 }
 

@@ -13,8 +13,8 @@ namespace afterglow {
 /// more lines or a smaller error. What the last stage gives does not depend on the stages before it.
 class FrameRefinement {
   public:
-    /// Places the actors at the frame's time. Keeps a reference to `parts`.
-    FrameRefinement(SequenceState::Parts& parts, double time_s);
+    /// Places the actors where they are in a frame. Keeps a reference to `parts`.
+    FrameRefinement(SequenceState::Parts& parts, int frame);
 
     /// Looks along the first `directions` sight lines of every patch, where that is more than before.
     void look(Index directions, VisibilityStrategy& strategy, const Context& context);
@@ -41,6 +41,7 @@ class FrameRefinement {
                     const Context& context);
 
     SequenceState::Parts& parts_;
+    int frame_;
     double time_s_;
     std::vector<LightInPlace> lights_;
     std::vector<Material> materials_;

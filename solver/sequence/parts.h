@@ -42,7 +42,9 @@ struct SequenceState::Parts {
         return config.frames_per_second > 0 ? config.frames_per_second : world.frames_per_second;
     }
     [[nodiscard]] double time_of(int frame) const { return frame / frames_per_second(); }
-    [[nodiscard]] LineScene lines() const { return {mesh, *sight, *light, caster, background}; }
+    [[nodiscard]] LineScene lines(int frame) const {
+        return {mesh, *sight, *light, caster, background, frame};
+    }
 };
 
 }  // namespace afterglow

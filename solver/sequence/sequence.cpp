@@ -11,6 +11,7 @@
 #include "solver/image/tone_map.h"
 #include "solver/sequence/frame_refinement.h"
 #include "solver/sequence/prepare.h"
+#include "solver/visibility/events.h"
 
 namespace afterglow {
 
@@ -23,12 +24,14 @@ constexpr double coarse_error = 0.5;
 // Side of the picture that the automatic exposure is taken from.
 constexpr int exposure_picture_height = 90;
 
-std::unique_ptr<VisibilityStrategy> make_strategy(Visibility visibility) {
-    switch (visibility) {
+std::unique_ptr<VisibilityStrategy> make_strategy(const SequenceState::Parts& parts) {
+    switch (parts.config.visibility) {
         case Visibility::retrace:
             return make_retrace();
         case Visibility::back_buffer:
             return make_back_buffer();
+        case Visibility::events:
+            return make_events(parts.world, FrameClock{parts.frames_per_second()});
     }
     throw Error(ErrorKind::invalid_input, "visibility", "is not one of the strategies there are");
 }
@@ -128,7 +131,7 @@ SequenceState make_state(World world, const SequenceConfig& config, const Contex
     check(config);
     auto parts = std::make_unique<SequenceState::Parts>(std::move(world), config);
     parts->camera = find_camera(parts->world, config.camera);
-    parts->strategy = make_strategy(config.visibility);
+    parts->strategy = make_strategy(*parts);
     mesh_world(*parts, context);
     parts->statistics.setup = watch.elapsed();
     return SequenceState(std::move(parts));
@@ -140,9 +143,10 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     if (frame_number < 0) throw Error(ErrorKind::invalid_input, "frame", "must be 0 or more");
     const Stopwatch watch;
     const Milliseconds static_before = parts.statistics.static_pass;
+    const Milliseconds ahead_before = total(parts.statistics.work_ahead);
     if (!parts.exposure_ev) parts.exposure_ev = find_exposure(parts, context.part(0, 0.1));
 
-    FrameRefinement frame(parts, parts.time_of(frame_number));
+    FrameRefinement frame(parts, frame_number);
     Publisher publisher(parts, frame_number, on_revision);
     const Index all = parts.sight->lines_per_patch();
     if (publisher.wants_preliminary()) {
@@ -169,7 +173,10 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     statistics.frame = frame_number;
     statistics.visibility_changes = count_changes(parts.visible.patch, parts.visible_before);
     parts.visible_before = parts.visible.patch;
-    statistics.total = watch.elapsed() - (parts.statistics.static_pass - static_before);
+    const auto ahead = parts.strategy->work_ahead();
+    parts.statistics.work_ahead.assign(ahead.begin(), ahead.end());
+    statistics.total = watch.elapsed() - (parts.statistics.static_pass - static_before) -
+                       (total(parts.statistics.work_ahead) - ahead_before);
     context.report(1, "frame finished");
     return statistics;
 }

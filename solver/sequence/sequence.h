@@ -11,6 +11,7 @@
 #include "solver/base/stopwatch.h"
 #include "solver/scene/world.h"
 #include "solver/sequence/config.h"
+#include "solver/visibility/strategy.h"
 
 namespace afterglow {
 
@@ -37,6 +38,7 @@ struct SequenceStatistics {
     Milliseconds setup{};        ///< meshing and acceleration structures
     Milliseconds static_pass{};  ///< sight lines against the furniture, or reading them from the cache
     bool static_from_cache = false;
+    std::vector<WorkAhead> work_ahead;  ///< what was done for ranges of frames at once; in no frame's total
 };
 
 /// A picture on its way to a frame: linear radiance, and the same ready to be shown.

@@ -89,7 +89,7 @@ class Events : public VisibilityStrategy {
         if (first_time)
             std::copy(scene.background.light_contribution.begin(), scene.background.light_contribution.end(),
                       visible.light_contribution.begin());
-        const FrameRange frames = window.actors.frames();
+        const FrameSpan frames = window.actors.frames();
         for (int f = 0; f <= scene.frame - frames.first; ++f) {
             for (const LineEvent& event : window.sight.back().at(f)) visible.patch[event.line] = event.to;
             if (!first_time) continue;
@@ -109,7 +109,7 @@ class Events : public VisibilityStrategy {
         }
     }
 
-    void note(const FrameRange& frames, Milliseconds time) {
+    void note(const FrameSpan& frames, Milliseconds time) {
         if (work_ahead_.empty() || work_ahead_.back().frames != frames)
             work_ahead_.push_back({frames, time});
         else

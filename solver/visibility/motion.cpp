@@ -23,7 +23,7 @@ void append(std::vector<MotionSegment>& segments, const MotionSegment& segment) 
 }
 
 /// The first frame whose time is not before `time_s`, as the clock itself counts, limited to the range.
-int first_frame_from(double time_s, const FrameClock& clock, const FrameRange& range) {
+int first_frame_from(double time_s, const FrameClock& clock, const FrameSpan& range) {
     const double guess = std::ceil(time_s * clock.frames_per_second);
     // Clamped while it is still a double: infinities and huge times must not become integers.
     int frame = static_cast<int>(
@@ -53,11 +53,11 @@ std::vector<MotionSegment> motion_segments(const Path& path) {
     return segments;
 }
 
-std::vector<SteadyFrames> steady_frames(const Path& path, const FrameClock& clock, const FrameRange& range) {
+std::vector<SteadyFrames> steady_frames(const Path& path, const FrameClock& clock, const FrameSpan& range) {
     std::vector<SteadyFrames> parts;
     for (const MotionSegment& segment : motion_segments(path)) {
-        const FrameRange frames{first_frame_from(segment.begin_s, clock, range),
-                                first_frame_from(segment.end_s, clock, range) - 1};
+        const FrameSpan frames{first_frame_from(segment.begin_s, clock, range),
+                               first_frame_from(segment.end_s, clock, range) - 1};
         if (frames.count() <= 0) continue;
         SteadyFrames part{segment.motion, frames, path.at(clock.time_of(frames.first)), Vec3(0)};
         if (segment.motion != Motion::rest) {

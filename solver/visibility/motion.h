@@ -33,17 +33,17 @@ struct FrameClock {
 };
 
 /// Consecutive frames, the last one included.
-struct FrameRange {
+struct FrameSpan {
     int first = 0, last = 0;
     [[nodiscard]] int count() const { return last - first + 1; }
     [[nodiscard]] bool contains(int frame) const { return first <= frame && frame <= last; }
-    bool operator==(const FrameRange&) const = default;
+    bool operator==(const FrameSpan&) const = default;
 };
 
 /// What a body does over some consecutive frames: it moves by the same step from each to the next.
 struct SteadyFrames {
     Motion motion = Motion::rest;
-    FrameRange frames;
+    FrameSpan frames;
     Pose first;      ///< at the first of the frames
     Vec3 step_m{0};  ///< from each frame to the next; also where it turns
 };
@@ -51,6 +51,6 @@ struct SteadyFrames {
 /// A path as seen by the frames of a range only: whatever happens between two frames and is over by the
 /// second leaves no trace. Segments without a frame in the range are left out; together the parts hold every
 /// frame of the range once, in order. Thread-safety: pure.
-std::vector<SteadyFrames> steady_frames(const Path& path, const FrameClock& clock, const FrameRange& range);
+std::vector<SteadyFrames> steady_frames(const Path& path, const FrameClock& clock, const FrameSpan& range);
 
 }  // namespace afterglow

@@ -11,9 +11,9 @@ struct MovingFaces {
     const Body& body;
     const TriangleTree& tree;
     Index body_index = 0;
-    Pose first;         ///< in its first frame
-    Vec3 step_m{0};     ///< from frame to frame
-    FrameRange frames;  ///< as the time buffer counts them
+    Pose first;        ///< in its first frame
+    Vec3 step_m{0};    ///< from frame to frame
+    FrameSpan frames;  ///< as the time buffer counts them
 };
 
 /// Puts every face of the body that a ray meets into the buffer, for all its frames at once. Exact up to

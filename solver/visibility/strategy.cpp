@@ -48,6 +48,12 @@ class BackBuffer : public VisibilityStrategy {
 
 }  // namespace
 
+Milliseconds total(std::span<const WorkAhead> work) {
+    Milliseconds sum{};
+    for (const WorkAhead& window : work) sum += window.time;
+    return sum;
+}
+
 VisibleLines make_visible_lines(const PatchMesh& mesh, const SightLines& sight, const LightLines& light) {
     VisibleLines visible;
     visible.patch.assign(std::size_t{mesh.size()} * sight.lines_per_patch(), sees_nothing);

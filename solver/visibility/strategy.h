@@ -29,9 +29,12 @@ struct LineScene {
 
 /// What a strategy did for a range of frames at once, when the first of them was asked for.
 struct WorkAhead {
-    FrameRange frames;
+    FrameSpan frames;
     Milliseconds time{};
 };
+
+/// The time of all of it.
+Milliseconds total(std::span<const WorkAhead> work);
 
 /// How a frame learns what its lines see. All strategies give the same answers; they differ in work.
 /// A strategy may keep what it knows from one frame for the next. One thread at a time.

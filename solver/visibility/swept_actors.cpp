@@ -14,7 +14,7 @@ ActorTrees make_actor_trees(const World& world) {
 }
 
 SweptActors::SweptActors(const World& world, const ActorTrees& trees, const FrameClock& clock,
-                         const FrameRange& frames)
+                         const FrameSpan& frames)
     : world_(&world),
       trees_(&trees),
       frames_(frames),

@@ -21,9 +21,9 @@ class SweptActors {
   public:
     /// The world and its trees must outlive this.
     SweptActors(const World& world, const ActorTrees& trees, const FrameClock& clock,
-                const FrameRange& frames);
+                const FrameSpan& frames);
 
-    [[nodiscard]] const FrameRange& frames() const { return frames_; }
+    [[nodiscard]] const FrameSpan& frames() const { return frames_; }
 
     /// Where an actor stands in a frame, counted from the first.
     [[nodiscard]] const Pose& pose(Index body, int frame) const {
@@ -56,7 +56,7 @@ class SweptActors {
 
     const World* world_;
     const ActorTrees* trees_;
-    FrameRange frames_;
+    FrameSpan frames_;
     std::vector<std::vector<Pose>> poses_;         ///< [body][frame]; empty for the furniture
     std::vector<std::vector<char>> steady_after_;  ///< [body][frame]; empty for the furniture
     std::vector<Sweep> sweeps_;

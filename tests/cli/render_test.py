@@ -121,7 +121,7 @@ class Frames(Case):
         self.assertEqual(self.bytes_of("several")["frame_0006.exr"], self.bytes_of("alone")["frame_0006.exr"])
 
     def test_every_method_renders(self):
-        for method in ("full", "baum86"):
+        for method in ("full", "baum86", "events"):
             self.render("--frames", "2", "--method", method, "--out", method, "--report", f"{method}.json")
             self.assertEqual(json.loads((self.folder / f"{method}.json").read_text())["method"], method)
 

@@ -43,7 +43,7 @@ TEST(MotionSegments, JumpWithoutASegment) {
     EXPECT_EQ(segments[2].begin, at(6));
 }
 
-void expect_poses(const Path& path, const FrameClock& clock, const FrameRange& range, float tolerance_m) {
+void expect_poses(const Path& path, const FrameClock& clock, const FrameSpan& range, float tolerance_m) {
     int next = range.first;
     for (const SteadyFrames& part : steady_frames(path, clock, range)) {
         ASSERT_EQ(part.frames.first, next);
@@ -85,8 +85,8 @@ TEST(SteadyFrames, AKnotExactlyOnAFrameBelongsToWhatFollows) {
     path.keys = {{0, at(0)}, {0.5, at(1)}, {1, at(1)}};
     const auto parts = steady_frames(path, {24}, {0, 24});
     ASSERT_EQ(parts.size(), 2U);
-    EXPECT_EQ(parts[0].frames, (FrameRange{0, 11}));
-    EXPECT_EQ(parts[1].frames, (FrameRange{12, 24}));
+    EXPECT_EQ(parts[0].frames, (FrameSpan{0, 11}));
+    EXPECT_EQ(parts[1].frames, (FrameSpan{12, 24}));
 }
 
 TEST(SteadyFrames, ThatRangeOverHugeTimesAreFound) {

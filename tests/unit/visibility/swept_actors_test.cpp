@@ -47,7 +47,7 @@ void compare_frame(const RayCaster& caster, const RayPacket& rays, const TimeBuf
 }
 
 /// Every lane in every frame against the ray caster.
-Differences compare(const World& world, const FrameClock& clock, const FrameRange& frames, unsigned seed,
+Differences compare(const World& world, const FrameClock& clock, const FrameSpan& frames, unsigned seed,
                     int packets) {
     const ActorTrees trees = make_actor_trees(world);
     const SweptActors swept(world, trees, clock, frames);
