@@ -19,6 +19,7 @@ SequenceConfig quick() {
     config.patch_size_m = 0.4;
     config.rays_per_patch = 64;
     config.quality = Quality::draft;
+    config.asked_error = 0.02;
     config.width = 48;
     config.height = 32;
     return config;
