@@ -24,6 +24,7 @@ QualityLevel level_for(Quality quality) {
             level.rays_per_patch = 512;
             level.picture = {8, 64, 4, 0.02F};
             // Half the error is a quarter of its square, to be told from noise that must be so much smaller.
+            level.probes.parts = 24;
             level.probes.samples_per_part = 32;
             level.probes.paths_per_sample = 4;
             break;
