@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/base/error.h"
+#include "solver/image/probe_choice.h"
 
 namespace afterglow {
 
@@ -17,24 +18,11 @@ constexpr std::size_t lamp_looks = 64;
 constexpr std::size_t pixels_per_chunk = 4;
 // Told apart from each other and from the samples of the picture under test, which must be independent.
 constexpr std::uint64_t probe_salt = 0x70726f626573;
-enum class Purpose : std::uint64_t { choice, lamp, camera, lamps, bounce, path };
+enum class Purpose : std::uint64_t { lamp, camera, lamps, bounce, path };
 // Parts of the first look; the others count from 0.
 constexpr int first_pilot_part = 1 << 30;
-// Pixels looked at for unevenness, for each one probed.
-constexpr std::size_t candidates_per_probe = 16;
-// Of the probes, this share is chosen evenly: no weight is larger than its inverse.
-constexpr double even_share = 0.5;
-// What is brighter than this many times the mean is a lamp or beside one, and left out later.
-constexpr float brightest_per_mean = 4;
 // Parts of a pixel are at least this share of the mean number, and at most so many times it.
 constexpr double least_parts_share = 0.5, most_parts_ratio = 8;
-
-/// A pixel to be probed.
-struct Probe {
-    int x = 0, y = 0;
-    double weight = 1;       // over those of pixels chosen evenly
-    std::uint64_t seed = 0;  // its own, also where a pixel is chosen twice
-};
 
 /// What a first look at a pixel says.
 struct Pilot {
@@ -153,83 +141,6 @@ class Prober {
     SobolPoints points_;
 };
 
-/// The standard deviation of a pixel and its neighbours, of channels added up, bright ones cut off.
-double unevenness(const Picture& picture, int x, int y, float brightest) {
-    double sum = 0, squares = 0, count = 0;
-    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, picture.height - 1); ++v)
-        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, picture.width - 1); ++u) {
-            const double value = std::min(glm::dot(picture.at(u, v), Rgb(1)), brightest);
-            sum += value;
-            squares += value * value;
-            ++count;
-        }
-    return std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count)));
-}
-
-/// A number that puts near pixels near each other: the bits of both coordinates in turn (Morton 1966).
-std::uint64_t place_on_curve(const Probe& probe) {
-    std::uint64_t place = 0;
-    for (unsigned bit = 0; bit < 16; ++bit)
-        place |= ((static_cast<std::uint64_t>(probe.x) >> bit & 1U) << (2 * bit)) |
-                 ((static_cast<std::uint64_t>(probe.y) >> bit & 1U) << (2 * bit + 1));
-    return place;
-}
-
-std::vector<Probe> spread_evenly(const Picture& picture, std::size_t count, std::uint64_t seed) {
-    std::vector<Probe> probes;
-    const SobolPoints points(count);
-    for (std::size_t k = 0; k < count; ++k) {
-        const Sample4 s = points.at(k, seed);
-        const auto place = [](float share, int pixels) {
-            return std::min(static_cast<int>(share * static_cast<float>(pixels)), pixels - 1);
-        };
-        probes.push_back({place(s[0], picture.width), place(s[1], picture.height)});
-    }
-    return probes;
-}
-
-/// Chosen from candidates spread evenly, half of them by chance alone, half by how uneven the picture is
-/// around: that is where its errors are.
-std::vector<Probe> choose_uneven(const Picture& picture, const ProbeConfig& config, std::uint64_t seed) {
-    const auto asked = static_cast<std::size_t>(config.pixels);
-    std::vector<Probe> candidates = spread_evenly(picture, asked * candidates_per_probe, seed);
-    std::sort(candidates.begin(), candidates.end(),
-              [](const Probe& a, const Probe& b) { return place_on_curve(a) < place_on_curve(b); });
-    double light = 0;
-    for (const Probe& c : candidates) light += static_cast<double>(glm::dot(picture.at(c.x, c.y), Rgb(1)));
-    const auto count = static_cast<double>(candidates.size());
-    const auto brightest = brightest_per_mean * static_cast<float>(light / count);
-    double total = 0;
-    for (Probe& c : candidates) total += c.weight = unevenness(picture, c.x, c.y, brightest);
-
-    std::vector<Probe> chosen;
-    RandomStream random(mixed(seed));
-    double passed = 0;
-    auto next = static_cast<double>(random.next());
-    for (const Probe& c : candidates) {
-        const double share = total > 0 ? even_share / count + (1 - even_share) * c.weight / total : 1 / count;
-        passed += share * static_cast<double>(asked);
-        // One in each of `asked` equal steps.
-        for (; next < passed; next = static_cast<double>(chosen.size()) + static_cast<double>(random.next()))
-            chosen.push_back({c.x, c.y, 1 / (count * share)});
-    }
-    return chosen;
-}
-
-/// All pixels of a picture that has no more than are asked for.
-std::vector<Probe> choose_pixels(const Picture& picture, const ProbeConfig& config) {
-    std::vector<Probe> chosen;
-    const std::uint64_t seed = mixed(config.seed ^ probe_salt, static_cast<std::uint64_t>(Purpose::choice));
-    if (picture.pixels.size() <= static_cast<std::size_t>(config.pixels)) {
-        for (int y = 0; y < picture.height; ++y)
-            for (int x = 0; x < picture.width; ++x) chosen.push_back({x, y});
-    } else {
-        chosen = choose_uneven(picture, config, seed);
-    }
-    for (std::size_t k = 0; k < chosen.size(); ++k) chosen[k].seed = mixed(config.seed ^ probe_salt, k);
-    return chosen;
-}
-
 /// How many parts each probe takes. The variance of a probe's pairs goes with the square of its noise over
 /// that of its parts, so the sum over probes is least where parts go with the noise to the power of 2/3.
 std::vector<int> share_out_parts(const std::vector<Probe>& probes, const std::vector<Pilot>& pilots,
@@ -311,7 +222,7 @@ std::uint64_t for_probes(std::size_t count, const Context& context, const Visit&
 ProbeEstimate estimate_error(const Picture& picture, const CameraView& view, const PathScene& scene,
                              const ProbeConfig& config, std::uint64_t& rays_traced, const Context& context) {
     check(picture, view, config);
-    const std::vector<Probe> probes = choose_pixels(picture, config);
+    const std::vector<Probe> probes = choose_probes(picture, config.pixels, config.seed ^ probe_salt);
     const Prober prober(picture, view, scene, config);
     std::vector<Pilot> pilots(probes.size());
     rays_traced += for_probes(probes.size(), context, [&](std::size_t k, std::uint64_t& rays) {
