@@ -44,7 +44,8 @@ void add_settings(CLI::App& app, JobSettings& s) {
     app.add_option("--solution", s.solution, "How the light is solved")->type_name("");
     app.add_option("--rays", s.rays, "Sight lines of a patch")->type_name("");
     app.add_option("--patch-size", s.patch_size_m, "Target edge of a patch in metres")->type_name("");
-    add_parsed(app, "--error", "Asked relative error: 0.02 or 2%", parse_share,
+    add_parsed(app, "--error",
+               "Asked relative error of the pictures, 0.02 or 2%; settles what --quality would", parse_share,
                [&s](double share) { s.error = share; });
     app.add_option("--estimate", s.estimate, "Of each picture's error: none or probes")->type_name("");
     app.add_option("--camera", s.camera, "Name of the camera; default: the first")->type_name("");

@@ -72,7 +72,7 @@ Json to_json(const JobSettings& settings) {
     json["solution"] = name_of(config.solution);
     json["rays"] = or_null(config.rays_per_patch);
     json["patch_size_m"] = or_null(config.patch_size_m);
-    json["error"] = config.asked_error;
+    json["error"] = or_null(config.asked_error);
     json["estimate"] = name_of(config.estimate);
     json["camera"] = config.camera.empty() ? Json(nullptr) : Json(config.camera);
     json["seed"] = config.seed;

@@ -40,7 +40,9 @@ void declare_options(CLI::App& app, Typed& typed) {
     app.add_option("--rays", typed.rays, "Sight lines a patch, 16 to 65536 [by quality]");
     app.add_option("--patch-size", typed.patch_size,
                    "Patch edge in metres, even everywhere [by quality and scene]");
-    app.add_option("--error", typed.error, "Asked relative error, 0.02 or 2% [2%]");
+    app.add_option("--error", typed.error,
+                   "Asked relative error of the pictures, 0.02 or 2%: settles what --quality would; with\n"
+                   "--rays or --patch-size, the solution's certificate only [by quality]");
     app.add_option("--estimate", typed.estimate, "Of each picture's error: none or probes [none]");
     app.add_option("--camera", typed.camera, "Camera by name [the first]");
     app.add_option("--exposure", typed.exposure,

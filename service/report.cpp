@@ -28,7 +28,8 @@ Json frame_json(const FrameStatistics& frame) {
             {"residual", frame.residual},
             {"error_bound", frame.error_bound},
             {"picture_error", or_null(frame.picture_error)},
-            {"picture_error_spread", or_null(frame.picture_error_spread)}};
+            {"picture_error_spread", or_null(frame.picture_error_spread)},
+            {"line_noise", or_null(frame.line_noise)}};
 }
 
 }  // namespace

@@ -36,15 +36,13 @@ SeenPoint look_at(const LitWorld& lit, const Ray& ray, const Hit& hit) {
     seen.reflectance = reflectance_at(*lit.world, material, hit);
     if (max_channel(seen.reflectance) <= 0) return seen;
 
-    const Pose& pose = lit.caster->pose(hit.body);
-    const Vec3 at = ray.origin + hit.distance * ray.direction;
-    const Vec3 in_body = hit.body == furniture ? at : glm::conjugate(pose.rotation) * (at - pose.translation);
-    const Stencil stencil = lit.interpolation->at(hit.body, hit.triangle, hit.side, in_body);
-    seen.radiance += seen.reflectance / pi * Interpolation::value(stencil, lit.irradiance, lit.confidence);
+    seen.radiance += seen.reflectance / pi * interpolated_irradiance(lit, ray, hit);
 
+    const Pose& pose = lit.caster->pose(hit.body);
     const float sign = hit.side == Side::front ? 1.0F : -1.0F;
     seen.normal = pose.direction(sign * lit.normals->at(hit.body, hit.triangle, hit.u, hit.v));
-    seen.position = at + lit.lift_m * normal_at(*lit.world, *lit.caster, hit);
+    seen.position =
+        ray.origin + hit.distance * ray.direction + lit.lift_m * normal_at(*lit.world, *lit.caster, hit);
     return seen;
 }
 
@@ -199,6 +197,14 @@ class PacketRenderer {
 };
 
 }  // namespace
+
+Rgb interpolated_irradiance(const LitWorld& lit, const Ray& ray, const Hit& hit) {
+    const Pose& pose = lit.caster->pose(hit.body);
+    const Vec3 at = ray.origin + hit.distance * ray.direction;
+    const Vec3 in_body = hit.body == furniture ? at : glm::conjugate(pose.rotation) * (at - pose.translation);
+    const Stencil stencil = lit.interpolation->at(hit.body, hit.triangle, hit.side, in_body);
+    return Interpolation::value(stencil, lit.irradiance, lit.confidence);
+}
 
 Picture render_picture(const CameraView& view, const LitWorld& lit, const PictureConfig& config,
                        std::uint64_t& rays_traced, const Context& context) {

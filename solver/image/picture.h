@@ -39,6 +39,9 @@ struct PictureConfig {
     std::uint64_t seed = 1;  ///< of the places of the samples within pixels and on lamps
 };
 
+/// What `lit.irradiance` is, interpolated, where a ray meets a surface, W/m². Thread-safety: pure.
+Rgb interpolated_irradiance(const LitWorld& lit, const Ray& ray, const Hit& hit);
+
 /// Radiance seen by a camera: what a surface emits, and its reflectance at the point (texture included) times
 /// the irradiance over π. Pixels that need them get more samples than the others (Mitchell 1987). Adds the
 /// number of rays to `rays_traced`. Same bits for any number of threads. Errors: cancelled.

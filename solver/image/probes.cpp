@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/base/error.h"
+#include "solver/image/probe_choice.h"
 
 namespace afterglow {
 
@@ -17,15 +18,20 @@ constexpr std::size_t lamp_looks = 64;
 constexpr std::size_t pixels_per_chunk = 4;
 // Told apart from each other and from the samples of the picture under test, which must be independent.
 constexpr std::uint64_t probe_salt = 0x70726f626573;
-enum class Purpose : std::uint64_t { choice, lamp, camera, lamps, bounce, path };
+enum class Purpose : std::uint64_t { lamp, camera, lamps, bounce, path };
+// Parts of the first look; the others count from 0.
+constexpr int first_pilot_part = 1 << 30;
+// Parts of a pixel are at least this share of the mean number, and at most so many times it.
+constexpr double least_parts_share = 0.5, most_parts_ratio = 8;
 
-struct ProbePixel {
-    int x = 0, y = 0;
+/// What a first look at a pixel says.
+struct Pilot {
+    bool used = false;    // not near a lamp
+    double variance = 0;  // of one path, summed over channels
 };
 
-/// What one pixel says: unbiased estimates, summed over channels.
+/// What one pixel says, times its weight: unbiased estimates, summed over channels.
 struct Tally {
-    bool used = false;
     double squared_error = 0;  // of (picture − truth)²
     double squared_light = 0;  // of truth²
 };
@@ -41,36 +47,51 @@ class Prober {
           points_(std::max(lamp_looks, static_cast<std::size_t>(config.samples_per_part) *
                                            static_cast<std::size_t>(config.paths_per_sample))) {}
 
-    [[nodiscard]] Tally probe(const ProbePixel& pixel, std::uint64_t& rays) const {
-        if (sees_lamp(pixel, rays)) return {};
-        const glm::dvec3 value(picture_.at(pixel.x, pixel.y));
+    /// How noisy a pixel's paths are, told from paths that serve nothing else: the number of its parts must
+    /// not depend on them.
+    [[nodiscard]] Pilot look(const Probe& probe, std::uint64_t& rays) const {
+        if (sees_lamp(probe, rays)) return {};
+        glm::dvec3 sum(0), squares(0);
+        for (int k = 0; k < config_.pilot_samples; ++k) {
+            const glm::dvec3 light = estimate_light(probe, first_pilot_part + k, {1, 1}, rays);
+            sum += light;
+            squares += light * light;
+        }
+        const double n = config_.pilot_samples;
+        return {true, std::max(0.0, glm::dot(squares - sum * sum / n, glm::dvec3(1)) / (n - 1))};
+    }
+
+    [[nodiscard]] Tally probe(const Probe& probe, int parts, std::uint64_t& rays) const {
+        const glm::dvec3 value(picture_.at(probe.x, probe.y));
         glm::dvec3 sum(0), squares(0), error_sum(0), error_squares(0);
-        for (int part = 0; part < config_.parts; ++part) {
-            const glm::dvec3 light = estimate_light(pixel, part, rays);
+        for (int part = 0; part < parts; ++part) {
+            const glm::dvec3 light =
+                estimate_light(probe, part, {config_.samples_per_part, config_.paths_per_sample}, rays);
             sum += light;
             squares += light * light;
             error_sum += value - light;
             error_squares += (value - light) * (value - light);
         }
         // The mean over all pairs of different parts, without visiting each.
-        const double pairs = static_cast<double>(config_.parts) * (config_.parts - 1);
+        const double pairs = static_cast<double>(parts) * (parts - 1);
         const auto of_pairs = [&](const glm::dvec3& total, const glm::dvec3& same) {
-            return glm::dot((total * total - same) / pairs, glm::dvec3(1));
+            return probe.weight * glm::dot((total * total - same) / pairs, glm::dvec3(1));
         };
-        return {true, of_pairs(error_sum, error_squares), of_pairs(sum, squares)};
+        return {of_pairs(error_sum, error_squares), of_pairs(sum, squares)};
     }
 
   private:
-    [[nodiscard]] std::uint64_t seed_of(const ProbePixel& pixel, int part, Purpose purpose) const {
-        const auto number = static_cast<std::uint64_t>(pixel.y) * static_cast<std::uint64_t>(view_.width) +
-                            static_cast<std::uint64_t>(pixel.x);
-        const std::uint64_t of_part =
-            mixed(mixed(config_.seed ^ probe_salt, number), static_cast<std::uint64_t>(part));
-        return mixed(of_part, static_cast<std::uint64_t>(purpose));
+    struct Counts {
+        int samples, paths_per_sample;
+    };
+
+    [[nodiscard]] static std::uint64_t seed_of(const Probe& probe, int part, Purpose purpose) {
+        return mixed(mixed(probe.seed, static_cast<std::uint64_t>(part)),
+                     static_cast<std::uint64_t>(purpose));
     }
 
     /// Whether a shining lamp shows within one pixel.
-    [[nodiscard]] bool sees_lamp(const ProbePixel& pixel, std::uint64_t& rays) const {
+    [[nodiscard]] bool sees_lamp(const Probe& pixel, std::uint64_t& rays) const {
         const std::uint64_t seed = seed_of(pixel, 0, Purpose::lamp);
         for (std::size_t k = 0; k < lamp_looks; ++k) {
             const Sample4 s = points_.at(k, seed);
@@ -85,13 +106,14 @@ class Prober {
     }
 
     /// An unbiased estimate of a pixel's radiance, independent of its other parts.
-    [[nodiscard]] Rgb estimate_light(const ProbePixel& pixel, int part, std::uint64_t& rays) const {
+    [[nodiscard]] Rgb estimate_light(const Probe& pixel, int part, const Counts& counts,
+                                     std::uint64_t& rays) const {
         const std::uint64_t camera_seed = seed_of(pixel, part, Purpose::camera);
         const std::uint64_t lamp_seed = seed_of(pixel, part, Purpose::lamps);
         const std::uint64_t bounce_seed = seed_of(pixel, part, Purpose::bounce);
         RandomStream random(seed_of(pixel, part, Purpose::path));
-        const auto samples = static_cast<std::size_t>(config_.samples_per_part);
-        const auto paths = static_cast<std::size_t>(config_.paths_per_sample);
+        const auto samples = static_cast<std::size_t>(counts.samples);
+        const auto paths = static_cast<std::size_t>(counts.paths_per_sample);
         Rgb sum(0);
         for (std::size_t k = 0; k < samples; ++k) {
             const Sample4 c = points_.at(k, camera_seed);
@@ -119,25 +141,25 @@ class Prober {
     SobolPoints points_;
 };
 
-/// Evenly spread pixels; all of a picture that has no more than are asked for.
-std::vector<ProbePixel> choose_pixels(const Picture& picture, const ProbeConfig& config) {
-    std::vector<ProbePixel> chosen;
-    const auto asked = static_cast<std::size_t>(config.pixels);
-    if (picture.pixels.size() <= asked) {
-        for (int y = 0; y < picture.height; ++y)
-            for (int x = 0; x < picture.width; ++x) chosen.push_back({x, y});
-        return chosen;
+/// How many parts each probe takes. The variance of a probe's pairs goes with the square of its noise over
+/// that of its parts, so the sum over probes is least where parts go with the noise to the power of 2/3.
+std::vector<int> share_out_parts(const std::vector<Probe>& probes, const std::vector<Pilot>& pilots,
+                                 const ProbeConfig& config) {
+    std::vector<double> wanted;
+    double sum = 0, used = 0;
+    for (std::size_t k = 0; k < probes.size(); ++k) {
+        wanted.push_back(std::pow(probes[k].weight * pilots[k].variance, 2 / 3.0));
+        sum += wanted.back();
+        used += pilots[k].used ? 1 : 0;
     }
-    const SobolPoints points(asked);
-    const std::uint64_t seed = mixed(config.seed ^ probe_salt, static_cast<std::uint64_t>(Purpose::choice));
-    for (std::size_t k = 0; k < asked; ++k) {
-        const Sample4 s = points.at(k, seed);
-        const auto place = [](float share, int count) {
-            return std::min(static_cast<int>(share * static_cast<float>(count)), count - 1);
-        };
-        chosen.push_back({place(s[0], picture.width), place(s[1], picture.height)});
+    std::vector<int> parts;
+    for (std::size_t k = 0; k < probes.size(); ++k) {
+        const double mean = config.parts;
+        const double share = sum > 0 ? wanted[k] / sum * used : 1;
+        const double count = mean * std::clamp(share, least_parts_share, most_parts_ratio);
+        parts.push_back(pilots[k].used ? std::max(2, static_cast<int>(std::lround(count))) : 0);
     }
-    return chosen;
+    return parts;
 }
 
 void check(const Picture& picture, const CameraView& view, const ProbeConfig& config) {
@@ -149,22 +171,22 @@ void check(const Picture& picture, const CameraView& view, const ProbeConfig& co
     at_least("parts", config.parts, 2);
     at_least("samples_per_part", config.samples_per_part, 1);
     at_least("paths_per_sample", config.paths_per_sample, 1);
+    at_least("pilot_samples", config.pilot_samples, 2);
     if (picture.pixels.empty() || picture.width != view.width || picture.height != view.height)
         throw Error(ErrorKind::invalid_input, "picture", "must be of the size that the camera's view is for");
 }
 
 /// The root of a ratio of means, and its spread by the delta method.
 ProbeEstimate estimate_of(const std::vector<Tally>& tallies) {
-    double error = 0, light = 0, count = 0;
+    double error = 0, light = 0;
     for (const Tally& t : tallies) {
         error += t.squared_error;
         light += t.squared_light;
-        count += t.used ? 1 : 0;
     }
     ProbeEstimate out;
-    out.left_out_share = 1 - count / static_cast<double>(tallies.size());
     if (!(light > 0)) return out;  // nothing to be relative to
     const double ratio = error / light;
+    const auto count = static_cast<double>(tallies.size());
     double squares = 0;
     for (const Tally& t : tallies) squares += std::pow(t.squared_error - ratio * t.squared_light, 2);
     const double spread = count > 1 ? std::sqrt(squares * count / (count - 1)) / light : 0;
@@ -174,22 +196,46 @@ ProbeEstimate estimate_of(const std::vector<Tally>& tallies) {
     return out;
 }
 
+double left_out_share(const std::vector<Probe>& probes, const std::vector<Pilot>& pilots) {
+    double out = 0, all = 0;
+    for (std::size_t k = 0; k < probes.size(); ++k) {
+        all += probes[k].weight;
+        if (!pilots[k].used) out += probes[k].weight;
+    }
+    return out / all;
+}
+
+/// Calls `visit(k, rays)` for every probe, on all threads, and returns the sum of rays.
+template <class Visit>
+std::uint64_t for_probes(std::size_t count, const Context& context, const Visit& visit) {
+    std::atomic<std::uint64_t> traced = 0;
+    context.for_chunks(count, pixels_per_chunk, [&](std::size_t begin, std::size_t end) {
+        std::uint64_t rays = 0;
+        for (std::size_t k = begin; k < end; ++k) visit(k, rays);
+        traced += rays;
+    });
+    return traced;
+}
+
 }  // namespace
 
 ProbeEstimate estimate_error(const Picture& picture, const CameraView& view, const PathScene& scene,
                              const ProbeConfig& config, std::uint64_t& rays_traced, const Context& context) {
     check(picture, view, config);
-    const std::vector<ProbePixel> pixels = choose_pixels(picture, config);
+    const std::vector<Probe> probes = choose_probes(picture, config.pixels, config.seed ^ probe_salt);
     const Prober prober(picture, view, scene, config);
-    std::vector<Tally> tallies(pixels.size());
-    std::atomic<std::uint64_t> traced = 0;
-    context.for_chunks(pixels.size(), pixels_per_chunk, [&](std::size_t begin, std::size_t end) {
-        std::uint64_t rays = 0;
-        for (std::size_t k = begin; k < end; ++k) tallies[k] = prober.probe(pixels[k], rays);
-        traced += rays;
+    std::vector<Pilot> pilots(probes.size());
+    rays_traced += for_probes(probes.size(), context, [&](std::size_t k, std::uint64_t& rays) {
+        pilots[k] = prober.look(probes[k], rays);
     });
-    rays_traced += traced;
-    return estimate_of(tallies);
+    const std::vector<int> parts = share_out_parts(probes, pilots, config);
+    std::vector<Tally> tallies(probes.size());
+    rays_traced += for_probes(probes.size(), context, [&](std::size_t k, std::uint64_t& rays) {
+        if (pilots[k].used) tallies[k] = prober.probe(probes[k], parts[k], rays);
+    });
+    ProbeEstimate estimate = estimate_of(tallies);
+    estimate.left_out_share = left_out_share(probes, pilots);
+    return estimate;
 }
 
 }  // namespace afterglow

@@ -9,13 +9,14 @@
 namespace afterglow {
 
 struct ProbeConfig {
-    int pixels = 256;  ///< probed, spread evenly over the picture; a smaller picture: all of its pixels
-    int parts = 8;     ///< independent estimates of each pixel, 2 or more
+    int pixels = 128;  ///< probed, more of them where the picture is uneven; a smaller picture: all of its
+    int parts = 16;    ///< independent estimates of a pixel on average, 2 or more; more of noisy ones
     int samples_per_part = 16;  ///< camera samples of each, one shadow ray to the lamps from each
     int paths_per_sample = 3;   ///< for the light that does not come straight from a lamp
     std::uint64_t seed = 1;     ///< of the choice of pixels and of all samples
     /// Paths may end early: more but shorter ones tell more for their time.
     PathConfig path = {.sure_bounces = 1};
+    int pilot_samples = 16;  ///< of each pixel first, one path each, 2 or more: how noisy it is
 };
 
 /// What probes say of a picture.

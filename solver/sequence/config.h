@@ -49,7 +49,10 @@ struct SequenceConfig {
                                         ///< 16; by quality where not given
     std::optional<double> patch_size_m;  ///< target patch edge, even everywhere; by quality and the scene's
                                          ///< size, and finer where needed, where not given
-    double asked_error = 0.02;           ///< relative error at which a solution is finished, in (0, 1)
+    /// Relative root mean square error of the picture, in (0, 1): settles what the quality would, see
+    /// level_for_error. Where rays_per_patch or patch_size_m are given, it is the solution's certificate and
+    /// nothing else. By quality where not given.
+    std::optional<double> asked_error;
     Quality quality = Quality::preview;  ///< see Quality
     int width = 640;                     ///< pixels, 1 to 16,384
     int height = 360;                    ///< pixels, 1 to 16,384

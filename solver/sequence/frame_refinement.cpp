@@ -1,6 +1,8 @@
 #include "solver/sequence/frame_refinement.h"
 
 #include "solver/base/stopwatch.h"
+#include "solver/formfactor/two_halves.h"
+#include "solver/image/line_noise.h"
 #include "solver/radiosity/ambient.h"
 #include "solver/sequence/prepare.h"
 #include "solver/sequence/quality.h"
@@ -82,6 +84,13 @@ std::vector<Rgb> FrameRefinement::indirect_irradiance() const {
     return indirect;
 }
 
+/// Of all patches, W/m².
+std::vector<Rgb> FrameRefinement::radiosity() const {
+    std::vector<Rgb> out = light_->irradiance;
+    for (std::size_t p = 0; p < out.size(); ++p) out[p] = emission_[p] + reflectance_[p] * out[p];
+    return out;
+}
+
 DirectLight FrameRefinement::direct_light() const {
     return {parts_.mesh, parts_.lamps, parts_.caster, emission_};
 }
@@ -127,6 +136,9 @@ Picture FrameRefinement::final_picture(const Context& context) {
 void FrameRefinement::estimate_error(const Picture& final_picture, const Context& context) {
     const Stopwatch watch;
     context.report(0.9, "estimating the picture's error");
+    const SeenLines seen{parts_.visible.patch, directions_, parts_.visible.light_contribution};
+    const auto differences = half_differences(*parts_.sight, parts_.lamps, seen, factors_, radiosity(),
+                                              pi * parts_.world.background, context);
     const DirectLight direct = direct_light();
     const PathScene scene{&parts_.world, &parts_.caster, materials_,
                           &direct,       lights_,        parts_.sight->lift_m()};
@@ -135,6 +147,8 @@ void FrameRefinement::estimate_error(const Picture& final_picture, const Context
         final_picture, view, scene, level_of(parts_.config).probes, statistics_.rays_traced, context);
     statistics_.picture_error = estimate.relative_error;
     statistics_.picture_error_spread = estimate.standard_error;
+    statistics_.line_noise =
+        line_noise(final_picture, view, lit_by(differences), statistics_.rays_traced, context);
     statistics_.image += watch.elapsed();
 }
 

@@ -35,6 +35,7 @@ class FrameRefinement {
     void compile(const Context& context);
     [[nodiscard]] RadiosityProblem problem() const;
     [[nodiscard]] std::vector<Rgb> indirect_irradiance() const;
+    [[nodiscard]] std::vector<Rgb> radiosity() const;
     [[nodiscard]] DirectLight direct_light() const;
     [[nodiscard]] LitWorld lit_by(std::span<const Rgb> irradiance) const;
     Picture picture(int width, int height, const LitWorld& lit, const PictureConfig& config,

@@ -43,7 +43,8 @@ void check(const SequenceConfig& config) {
             "rays", "must be from 16 to 65536");
     require(!config.patch_size_m || (*config.patch_size_m > 0 && std::isfinite(*config.patch_size_m)),
             "patch_size", "must be above 0 metres");
-    require(config.asked_error > 0 && config.asked_error < 1, "error", "must lie between 0 and 1");
+    require(!config.asked_error || (*config.asked_error > 0 && *config.asked_error < 1), "error",
+            "must lie between 0 and 1");
     require(config.width >= 1 && config.width <= 16384 && config.height >= 1 && config.height <= 16384,
             "size", "must be from 1 to 16384 pixels each way");
     require(config.frames_per_second >= 0 && std::isfinite(config.frames_per_second), "fps",

@@ -1,10 +1,14 @@
 #include "solver/sequence/quality.h"
 
+#include "solver/sequence/asked_error.h"
+
 namespace afterglow {
 
-QualityLevel level_of(const SequenceConfig& config) {
+namespace {
+
+QualityLevel level_for(Quality quality) {
     QualityLevel level;
-    switch (config.quality) {
+    switch (quality) {
         case Quality::draft:
             level.finest_share = 1;
             level.rays_per_patch = 128;
@@ -20,13 +24,23 @@ QualityLevel level_of(const SequenceConfig& config) {
             level.rays_per_patch = 512;
             level.picture = {8, 64, 4, 0.02F};
             // Half the error is a quarter of its square, to be told from noise that must be so much smaller.
+            level.probes.parts = 24;
             level.probes.samples_per_part = 32;
             level.probes.paths_per_sample = 4;
             break;
     }
+    return level;
+}
+
+}  // namespace
+
+QualityLevel level_of(const SequenceConfig& config) {
+    QualityLevel level =
+        error_settles_all(config) ? level_for_error(*config.asked_error) : level_for(config.quality);
+    if (config.asked_error) level.certificate = *config.asked_error;
+    if (config.rays_per_patch) level.rays_per_patch = *config.rays_per_patch;
     level.picture.seed = config.seed;
     level.probes.seed = config.seed;
-    if (config.rays_per_patch) level.rays_per_patch = *config.rays_per_patch;
     return level;
 }
 

@@ -7,16 +7,18 @@
 
 namespace afterglow {
 
-/// What a quality stands for. See README.md for the figures behind the numbers.
+/// What a quality or an asked error stands for. See README.md for the figures behind the numbers.
 struct QualityLevel {
     float cells = 1500;              ///< into which the reached surfaces are divided before any is refined
     float finest_share = 0.125F;     ///< of a cell's edge: no smaller patches; 1: all cells as they are
     float size_per_distance = 0.7F;  ///< see CoarsenessConfig
     int rays_per_patch = 256;        ///< where the settings name none
+    double certificate = 0.02;       ///< relative error at which a solution is finished
     PictureConfig picture;           ///< its seed is the settings'
     ProbeConfig probes;              ///< likewise; as many paths as the error to be told needs
 };
 
+/// By the asked error where that settles it (see SequenceConfig::asked_error), by quality otherwise.
 /// Thread-safety: pure.
 QualityLevel level_of(const SequenceConfig& config);
 

@@ -9,8 +9,10 @@
 
 #include "solver/base/stopwatch.h"
 #include "solver/image/tone_map.h"
+#include "solver/sequence/asked_error.h"
 #include "solver/sequence/frame_refinement.h"
 #include "solver/sequence/prepare.h"
+#include "solver/sequence/quality.h"
 #include "solver/visibility/events.h"
 
 namespace afterglow {
@@ -106,6 +108,15 @@ void warn_of_exhaustion(SequenceState::Parts& parts, const FrameRefinement& fram
                                            std::to_string(frame_number) + " ends within " + bound.str()});
 }
 
+/// Says ahead that the picture may be farther off than asked.
+void warn_of_fine_error(SequenceState::Parts& parts) {
+    if (!error_settles_all(parts.config) || *parts.config.asked_error >= finest_promised_error) return;
+    std::ostringstream promised;
+    promised << 100 * finest_promised_error << " %";
+    parts.warnings.push_back({"error", "is finer than pictures are known to get: below " + promised.str() +
+                                           " only the solution's certificate follows it for certain"});
+}
+
 std::uint64_t count_changes(const std::vector<Index>& now, const std::vector<Index>& before) {
     if (before.empty()) return 0;
     std::uint64_t changes = 0;
@@ -132,6 +143,7 @@ SequenceState make_state(World world, const SequenceConfig& config, const Contex
     auto parts = std::make_unique<SequenceState::Parts>(std::move(world), config);
     parts->camera = find_camera(parts->world, config.camera);
     parts->strategy = make_strategy(*parts);
+    warn_of_fine_error(*parts);
     mesh_world(*parts, context);
     parts->statistics.setup = watch.elapsed();
     return SequenceState(std::move(parts));
@@ -163,7 +175,7 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     }
     const Context last = context.part(0.6, 1);
     frame.look(all, *parts.strategy, last);
-    frame.solve(parts.config.asked_error, last);
+    frame.solve(level_of(parts.config).certificate, last);
     warn_of_exhaustion(parts, frame, frame_number);
     Picture picture = frame.final_picture(last);
     if (parts.config.estimate == Estimate::probes) frame.estimate_error(picture, last);

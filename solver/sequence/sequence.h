@@ -27,6 +27,7 @@ struct FrameStatistics {
     double error_bound = 0;               ///< the certificate: residual / (1 − gain)
     std::optional<double> picture_error;  ///< relative RMSE of the final picture, estimated if asked for
     std::optional<double> picture_error_spread;  ///< the estimate's standard error
+    std::optional<double> line_noise;  ///< part of picture_error: noise of the sight lines, from two halves
 };
 
 /// What the whole job cost before its frames.

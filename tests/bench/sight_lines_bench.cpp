@@ -1,6 +1,9 @@
 // The static pass of the living room three ways: packets of one direction × 16 neighbouring patches (the
 // report's linear virtual motion), packets of 16 directions of one patch (its circular one), and single rays.
-// Same lines each time.
+// Same lines each time. And what it would cost if the patches of a packet shared their directions turned
+// about the normal by an angle of each, or not at all.
+
+#include <cmath>
 
 #include <benchmark/benchmark.h>
 
@@ -55,6 +58,54 @@ void static_pass(benchmark::State& state) {
         benchmark::DoNotOptimize(trace_lines(r.lines, r.mesh, r.caster, Scope::static_geometry,
                                              {0, r.lines.static_blocks(), 0, 256},
                                              {r.targets.patch, r.targets.distance}, context));
+    }
+    count_rays(state);
+}
+
+/// What the lines of a packet have in common.
+enum class Directions {
+    turned,  ///< all but an angle about the normal, each patch its own
+    own,     ///< nothing
+};
+
+/// The rays of one direction of a block of the furniture, made anew as SightLines does.
+void rays_with(Directions directions, std::size_t block, Index direction, RayPacket& out) {
+    static const SobolPoints points(256);
+    const PatchBlock& b = room().lines.blocks()[block];
+    const Sample4 shared = points.at(direction, mixed(1, block));
+    const Vec3 shared_direction = cosine_direction(shared[0], shared[1]);
+    out.count = b.count;
+    for (Index lane = 0; lane < b.count; ++lane) {
+        const std::uint64_t seed = mixed(mixed(1), b.first + lane);
+        Sample4 sample = shared;
+        Vec3 local = shared_direction;
+        if (directions == Directions::own) {
+            sample = points.at(direction, seed);
+            local = cosine_direction(sample[0], sample[1]);
+        } else {
+            const float angle = 2 * pi * static_cast<float>(seed >> 40U) * 0x1p-24F;
+            const float c = std::cos(angle), s = std::sin(angle);
+            local = {c * local.x - s * local.y, s * local.x + c * local.y, local.z};
+        }
+        const PatchPoint point = room().mesh.point_on(b.first + lane, sample[2], sample[3]);
+        out.set(lane,
+                {point.position + room().lines.lift_m() * point.normal, Frame(point.normal).to_world(local)});
+    }
+}
+
+template <Directions directions>
+void packets_with(benchmark::State& state) {
+    const Context context(static_cast<int>(state.range(0)));
+    for (auto _ : state) {
+        for_static_blocks(context, [](std::size_t b) {
+            RayPacket rays;
+            HitPacket hits;
+            for (Index d = 0; d < 256; ++d) {
+                rays_with(directions, b, d, rays);
+                room().caster.nearest(rays, Scope::static_geometry, hits);
+                benchmark::DoNotOptimize(hits);
+            }
+        });
     }
     count_rays(state);
 }
@@ -118,6 +169,8 @@ void single_rays(benchmark::State& state) {
 
 BENCHMARK(static_pass)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(packets_over_neighbours)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(packets_with<Directions::turned>)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(packets_with<Directions::own>)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(packets_over_directions)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(single_rays)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 

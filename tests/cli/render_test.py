@@ -159,7 +159,7 @@ class Frames(Case):
         for frame in report["frames"]:
             self.assertEqual(set(frame), {"frame", "ms", "rays_traced", "visibility_changes", "shots",
                                           "active_patches", "residual", "error_bound", "picture_error",
-                                          "picture_error_spread"})
+                                          "picture_error_spread", "line_noise"})
             self.assertIsNone(frame["picture_error"])
             ms = frame["ms"]
             self.assertLessEqual(ms["visibility"] + ms["solve"] + ms["image"], ms["total"])

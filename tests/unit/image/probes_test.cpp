@@ -145,6 +145,27 @@ TEST(Probes, TheNoiseOfTheirPathsCancels) {
     EXPECT_LT(standard_error, 0.01) << "two paths a part spread by a third: uncancelled, that would add 0.05";
 }
 
+TEST(Probes, FindFaultsThatFewPixelsHave) {
+    const ProbedWorld probed(furnace(0.5F), 128, 128);
+    // One pixel in 64 is off by half its light.
+    Picture picture = uniform(probed.view, 2);
+    for (int y = 4; y < 128; y += 8)
+        for (int x = 4; x < 128; x += 8) picture.at(x, y) = Rgb(3);
+    ProbeConfig config;
+    config.samples_per_part = 4;
+    config.paths_per_sample = 1;
+    constexpr double truth = 0.5 / 8;
+    constexpr int seeds = 30;
+    double squares = 0;
+    for (int seed = 1; seed <= seeds; ++seed) {
+        config.seed = static_cast<std::uint64_t>(seed);
+        squares += std::pow(probed.estimate(picture, config).relative_error / truth - 1, 2);
+    }
+    // Half of 128 probes go to the nine pixels around each fault: eight or so meet one, which leaves a spread
+    // of 1 / (2 √8). Evenly chosen, two would, and the spread be twice that.
+    EXPECT_LT(std::sqrt(squares / seeds), 0.25);
+}
+
 TEST(Probes, LeaveOutWhatIsNearALamp) {
     World world = testing::empty_world(0.5F, Vec3(0, 0, 2));
     testing::add_quad(world.bodies[furniture], Vec3(-9, -9, -1), Vec3(18, 0, 0), Vec3(0, 18, 0), 0);
@@ -162,7 +183,9 @@ TEST(Probes, LeaveOutWhatIsNearALamp) {
             ++near;
         }
     ASSERT_GT(near, 8U);
-    const ProbeEstimate estimate = probed.estimate(picture);
+    ProbeConfig config;
+    config.pixels = 256;  // all of them
+    const ProbeEstimate estimate = probed.estimate(picture, config);
     // A pixel that a lamp covers by less than a third may be missing here.
     EXPECT_GE(estimate.left_out_share, static_cast<double>(near) / 256 - 1e-9);
     EXPECT_LT(estimate.left_out_share, static_cast<double>(near) / 256 + 0.15);

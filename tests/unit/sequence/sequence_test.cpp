@@ -19,6 +19,7 @@ SequenceConfig quick() {
     config.patch_size_m = 0.4;
     config.rays_per_patch = 64;
     config.quality = Quality::draft;
+    config.asked_error = 0.02;
     config.width = 48;
     config.height = 32;
     return config;
@@ -227,6 +228,9 @@ TEST(Sequence, EstimatesThePicturesErrorOnlyWhereAsked) {
     EXPECT_GT(*all.back().picture_error, 0.002);
     EXPECT_LT(*all.back().picture_error, 0.3);
     EXPECT_EQ(all.back().picture_error, statistics.front().picture_error);
+    // Half of 64 lines differ from the other half, but not by all the light.
+    EXPECT_GT(statistics.front().line_noise.value(), 1e-4);
+    EXPECT_LT(statistics.front().line_noise.value(), 0.3);
     EXPECT_EQ(all.back().picture_error_spread, statistics.front().picture_error_spread);
 
     config.estimate = Estimate::none;
@@ -239,6 +243,7 @@ TEST(Sequence, TheEstimateOfAFurnaceIsItsRounding) {
     config.estimate = Estimate::probes;
     const FrameStatistics frame = render_sequence(furnace(0.5F), config, 0, 0, {}).front();
     EXPECT_LT(*frame.picture_error, 3 * *frame.picture_error_spread + 1e-3);
+    EXPECT_LT(*frame.line_noise, 1e-4) << "all lines see the same light";
 }
 
 }  // namespace

@@ -36,6 +36,7 @@ TEST(Report, HasTheFieldsOfTheContractInOrder) {
     report.frames = {frame, frame};
     report.frames[1].picture_error = 0.03;
     report.frames[1].picture_error_spread = 0.01;
+    report.frames[1].line_noise = 0.02;
 
     const Json json = to_json(report, 12.5);
     EXPECT_EQ(keys(json), (std::vector<std::string>{"scene", "method", "patches", "actor_patches",
@@ -44,13 +45,14 @@ TEST(Report, HasTheFieldsOfTheContractInOrder) {
     EXPECT_EQ(keys(json["frames"][0]),
               (std::vector<std::string>{"frame", "ms", "rays_traced", "visibility_changes", "shots",
                                         "active_patches", "residual", "error_bound", "picture_error",
-                                        "picture_error_spread"}));
+                                        "picture_error_spread", "line_noise"}));
     EXPECT_EQ(json["frames"][0]["picture_error"], nullptr);
     EXPECT_EQ(keys(json["frames"][0]["ms"]),
               (std::vector<std::string>{"visibility", "solve", "image", "total"}));
     EXPECT_EQ(json["frames"].size(), 2U);
     EXPECT_EQ(json["frames"][1]["picture_error"], 0.03);
     EXPECT_EQ(json["frames"][1]["picture_error_spread"], 0.01);
+    EXPECT_EQ(json["frames"][1]["line_noise"], 0.02);
     EXPECT_EQ(json["precompute"], Json::array());
     EXPECT_EQ(json["load_ms"], 1.5);
     EXPECT_EQ(json["peak_rss_mb"], 12.5);
