@@ -16,7 +16,8 @@ namespace {
 constexpr float whole_cell_share = 0.9999F;  // covered by this much, a cell counts as a whole rectangle
 constexpr std::array<std::array<int, 2>, 8> neighbours{
     {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
-constexpr float sliver_share = 1e-5F;  // below it, the neighbouring cell answers for the sliver
+constexpr float smallest_crowded = 0.125F;  // cells with too many cuts are halved down to this
+constexpr float sliver_share = 1e-5F;       // below it, the neighbouring cell answers for the sliver
 
 /// A cell or a quarter of one on its way to patches.
 struct Node {
@@ -72,11 +73,8 @@ class FlatDivision {
 
     SurfaceShapes run() {
         for (const Index t : surface_.triangles) add_triangle(t);
-        if (config_.is_too_coarse) {
-            for (Index root = 0, roots = static_cast<Index>(nodes_.size()); root < roots; ++root)
-                refine(root);
-            while (balance()) {
-            }
+        for (Index root = 0, roots = static_cast<Index>(nodes_.size()); root < roots; ++root) refine(root);
+        while (balance()) {
         }
         return emit();
     }
@@ -145,16 +143,24 @@ class FlatDivision {
     // --- refinement
 
     void refine(Index n) {
-        const float edge = nodes_[n].size * std::max(plane_.cell_m.x, plane_.cell_m.y);
-        if (0.5F * edge < config_.finest_m || is_empty(nodes_[n])) return;
-        const SplitCell split = parts_of(nodes_[n]);
-        const auto is_too_coarse = [&](const CellPart& part) {
-            const auto shape = shape_of(nodes_[n], part);
-            return shape && config_.is_too_coarse(*shape, surface_.body, side_);
-        };
-        if (std::none_of(split.parts.begin(), split.parts.end(), is_too_coarse)) return;
+        if (is_empty(nodes_[n]) || !(is_crowded(nodes_[n]) || is_too_coarse(nodes_[n]))) return;
         divide(n);
         for (Index q = 0; q < 4; ++q) refine(nodes_[n].first_child + q);
+    }
+
+    [[nodiscard]] static bool is_crowded(const Node& node) {
+        return node.cuts.size() > most_cuts_in_cell && node.size > smallest_crowded;
+    }
+
+    [[nodiscard]] bool is_too_coarse(const Node& node) const {
+        const float edge = node.size * std::max(plane_.cell_m.x, plane_.cell_m.y);
+        if (!config_.is_too_coarse || 0.5F * edge < config_.finest_m) return false;
+        const auto is_too_coarse_in = [&](const CellPart& part) {
+            const auto shape = shape_of(node, part);
+            return shape && config_.is_too_coarse(*shape, surface_.body, side_);
+        };
+        const SplitCell split = parts_of(node);
+        return std::any_of(split.parts.begin(), split.parts.end(), is_too_coarse_in);
     }
 
     void divide(Index n) {

@@ -31,11 +31,10 @@ struct CutLayer {
     void add(const Cut& cut) {
         const auto segment =
             clip({plane.grid.cell_at(cut.from), plane.grid.cell_at(cut.to)}, -tolerance, end + tolerance);
-        if (!segment || glm::length(plane.cell_m * (segment->to - segment->from)) <= out.tolerance_m ||
-            is_on_border(*segment))
-            return;
+        if (!segment || glm::length(plane.cell_m * (segment->to - segment->from)) <= out.tolerance_m) return;
         const auto number = static_cast<Index>(out.list.size());
-        out.list.push_back({*segment, line_through(segment->from, segment->to, plane.cell_m), cut.kerf_m});
+        out.list.push_back({*segment, line_through(segment->from, segment->to, plane.cell_m), cut.kerf_m,
+                            is_on_border(*segment)});
         if (out.of_cell.empty())
             out.of_cell.resize(static_cast<std::size_t>(end.x) * static_cast<std::size_t>(end.y));
         // Row by row, since a cut across the grid touches few of the cells in its bounds.
@@ -76,10 +75,12 @@ GridCuts lay_cuts(const PlaneGrid& plane, std::span<const Cut> cuts, Side side, 
 }
 
 void add_dividers(CellTree& tree, const GridCuts& cuts) {
-    if (cuts.list.empty()) return;
+    if (std::all_of(cuts.list.begin(), cuts.list.end(), [](const CellCut& cut) { return cut.on_border; }))
+        return;
     tree.first_divider.push_back(0);
     for (const auto& of_cell : cuts.of_cell) {
-        for (const Index c : of_cell) tree.dividers.push_back(cuts.list[c].segment);
+        for (const Index c : of_cell)
+            if (!cuts.list[c].on_border) tree.dividers.push_back(cuts.list[c].segment);
         tree.first_divider.push_back(tree.dividers.size());
     }
 }

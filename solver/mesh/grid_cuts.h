@@ -19,10 +19,10 @@ struct GridCuts {
     [[nodiscard]] std::vector<Index> touching(std::span<const Index> among, const CellSquare& square) const;
 };
 
-/// Cuts along the outer border of the grid divide nothing and are left out. Thread-safety: pure.
+/// Thread-safety: pure.
 GridCuts lay_cuts(const PlaneGrid& plane, std::span<const Cut> cuts, Side side, float lift_m);
 
-/// Gives the tree of the same grid its dividers.
+/// Gives the tree of the same grid its dividers: the cuts that are not along its border.
 void add_dividers(CellTree& tree, const GridCuts& cuts);
 
 }  // namespace afterglow

@@ -1,7 +1,7 @@
 #include "solver/mesh/split_cell.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace afterglow {
@@ -17,13 +17,16 @@ class Splitter {
 
     SplitCell run(std::vector<ClipPolygon> pieces, std::span<const CellCut> cuts) {
         std::vector<CellCut> within;
+        const Vec2 tolerance = square_.tolerance_m / square_.cell_m;
         for (const CellCut& cut : cuts) {
-            const auto part = clip(cut.segment, square_.low, square_.low + square_.size);
-            if (part && is_long(*part)) within.push_back({*part, cut.line, cut.kerf_m});
+            const auto part =
+                clip(cut.segment, square_.low - tolerance, square_.low + square_.size + tolerance);
+            if (part && is_long(*part)) within.push_back({*part, cut.line, cut.kerf_m, cut.on_border});
         }
-        std::stable_sort(within.begin(), within.end(), [&](const CellCut& a, const CellCut& b) {
+        std::sort(within.begin(), within.end(), [&](const CellCut& a, const CellCut& b) {
             return length_m(a.segment) > length_m(b.segment);
         });
+        within.resize(std::min(within.size(), most_cuts_in_cell));
         out_.root = split({std::move(pieces), {}}, within, CellTree::most_splits);
         return std::move(out_);
     }
@@ -34,32 +37,42 @@ class Splitter {
     }
     [[nodiscard]] bool is_long(const GridSegment& s) const { return length_m(s) > square_.tolerance_m; }
 
-    /// How far the surface of a part reaches to either side of a line, metres: least and greatest distance.
-    static std::pair<float, float> reach(const CellPart& part, const GridLine& line) {
-        float low = 0, high = 0;
+    /// How far the surface of a part reaches to either side of a line, and along it, metres.
+    struct Reach {
+        float below = 0, above = 0;
+        float first = std::numeric_limits<float>::infinity(), last = -first;
+        [[nodiscard]] float along() const { return last - first; }
+    };
+    [[nodiscard]] Reach reach_of(const CellPart& part, const CellCut& cut) const {
+        const Vec2 along = glm::normalize(square_.cell_m * (cut.segment.to - cut.segment.from));
+        Reach reach;
         for (const ClipPolygon& piece : part.pieces) {
             for (int k = 0; k < piece.count; ++k) {
-                const float d = line.distance(piece[k].cell);
-                low = std::min(low, d);
-                high = std::max(high, d);
+                const Vec2 &a = piece[k].cell, &b = piece[(k + 1) % piece.count].cell;
+                const float da = cut.line.distance(a), db = cut.line.distance(b);
+                reach.below = std::max(reach.below, -da);
+                reach.above = std::max(reach.above, da);
+                if ((da < 0) == (db < 0)) continue;
+                const Vec2 crossing = glm::mix(a, b, da / (da - db));
+                const float place = glm::dot(along, square_.cell_m * (crossing - cut.line.through));
+                reach.first = std::min(reach.first, place);
+                reach.last = std::max(reach.last, place);
             }
         }
-        return {low, high};
+        return reach;
     }
 
     Index split(CellPart part, std::span<const CellCut> cuts, int splits_left) {
+        const float stub_m = stub_per_tolerance * square_.tolerance_m;
         for (std::size_t k = 0; k < cuts.size() && splits_left > 0; ++k) {
-            const GridLine& line = cuts[k].line;
-            const auto [low, high] = reach(part, line);
-            const float stub_m = stub_per_tolerance * square_.tolerance_m;
-            const bool is_stub = length_m(cuts[k].segment) <= stub_m;
-            const float least_m = is_stub ? stub_m : square_.tolerance_m;
-            if (high > least_m && low < -least_m) {
-                if (is_stub) continue;
+            const Reach reach = reach_of(part, cuts[k]);
+            if (std::min(reach.below, reach.above) > square_.tolerance_m) {
+                if (length_m(cuts[k].segment) <= stub_m && reach.along() > 2 * stub_m) continue;
                 return split_by(part, cuts[k], cuts.subspan(k + 1), splits_left - 1);
             }
-            // All the surface that counts is on one side already, but may touch the line.
-            part.bounds.push_back({line, high > -low ? Keep::above : Keep::below, cuts[k].kerf_m});
+            // All the surface is on one side already, but may touch the line.
+            const Keep keep = reach.above > reach.below ? Keep::above : Keep::below;
+            part.bounds.push_back({cuts[k].line, keep, cuts[k].kerf_m});
         }
         if (part.pieces.empty()) return no_index;
         out_.parts.push_back(std::move(part));

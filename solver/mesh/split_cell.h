@@ -8,11 +8,16 @@
 
 namespace afterglow {
 
+/// No cell is split along more cuts than this; the longest count.
+inline constexpr std::size_t most_cuts_in_cell = 32;
+
 /// A cut in the grid of its surface.
 struct CellCut {
     GridSegment segment;
     GridLine line;     ///< through the segment
     float kerf_m = 0;  ///< see Cut
+    /// Along the outer border of the grid: it divides nothing, but points keep off it.
+    bool on_border = false;
 };
 
 /// The side of a cut's line on which a part of a cell lies, and how far its points must keep off.
@@ -46,8 +51,8 @@ struct CellSquare {
 };
 
 /// Splits the surface within a cell along the cuts that pass through it, the longest first; the line of a cut
-/// that ends in the cell is drawn on to where it meets another one or the border. At most
-/// CellTree::most_splits lines within one another. Source: Fuchs, Kedem and Naylor 1980 (binary space
+/// that ends in the cell is drawn on to where it meets another one or the border. At most most_cuts_in_cell,
+/// and CellTree::most_splits within one another. Source: Fuchs, Kedem and Naylor 1980 (binary space
 /// partition). Thread-safety: pure.
 SplitCell split_cell(std::vector<ClipPolygon> pieces, std::span<const CellCut> cuts,
                      const CellSquare& square);

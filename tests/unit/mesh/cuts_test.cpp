@@ -87,8 +87,9 @@ TEST(Cuts, ASheetThatLeansKeepsPointsFartherOff) {
     World world = floor_world();
     add_quad(world.bodies[furniture], Vec3(1, 0, 2), Vec3(2, 0, 0), Vec3(0, 1, 3), 0);
     const auto cuts = cuts_of_floor(world);
-    ASSERT_EQ(cuts.size(), 1U);
-    EXPECT_GT(cuts[0].kerf_m, 3 * lift_for(world)) << "at the height of a lift, it stands three lifts aside";
+    ASSERT_FALSE(cuts.empty());
+    for (const Cut& cut : cuts)
+        EXPECT_GT(cut.kerf_m, 3 * lift_for(world)) << "at the height of a lift, it stands three lifts aside";
 }
 
 TEST(Cuts, AreTheSameForAnyNumberOfThreads) {
