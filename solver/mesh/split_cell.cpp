@@ -9,7 +9,7 @@ namespace afterglow {
 namespace {
 
 // Cuts are drawn a little long, and what sticks out beyond the next one is no reason to split on.
-constexpr float stub_per_tolerance = 50;
+constexpr float stub_per_tolerance = 20;
 
 class Splitter {
   public:

@@ -55,6 +55,11 @@ struct Floor {
         for (const auto& [place, normal] : across) sides.push_back(glm::dot(p - place, normal) > 0);
         return sides;
     }
+    [[nodiscard]] std::string distances_of(const Vec3& p) const {
+        std::string text;
+        for (const auto& [place, normal] : across) text += std::to_string(glm::dot(p - place, normal)) + " ";
+        return text;
+    }
 };
 
 PatchMesh mesh_of(const Floor& floor, float size, const CoarsenessTest& test = {}) {
@@ -102,7 +107,10 @@ TEST(SplitMesh, NoPatchLiesOnBothSidesOfADivider) {
                 const float s = (static_cast<float>(i % 8) + 0.01F) / 7.1F;
                 const float t = (static_cast<float>(i / 8) + 0.01F) / 7.1F;
                 const Vec3 at = mesh.point_on(p, s, t).position;
-                ASSERT_EQ(floor.sides_of(at), sides) << "floor " << k << ", patch " << p;
+                ASSERT_EQ(floor.sides_of(at), sides)
+                    << "floor " << k << ", patch " << p << " of " << mesh.area_m2[p] << " m2, lift "
+                    << mesh.lift_m << ", distances " << floor.distances_of(at) << " and "
+                    << floor.distances_of(mesh.centre[p]);
             }
             split += mesh.first_fragment[p] != mesh.first_fragment[p + 1] ? 1 : 0;
         }
