@@ -65,7 +65,10 @@ std::optional<Cut> cut_by(const Ground& ground, const std::array<Vec3, 3>& corne
     for (std::size_t k = 0; k < 3; ++k) height[k] = ground.height(corner[k]);
     const auto [low, high] = std::minmax_element(height.begin(), height.end());
     const float contact = ground.contact_m;
-    if (*low > contact || *high < -contact || (*low >= -contact && *high <= contact)) return std::nullopt;
+    const auto touching =
+        std::count_if(height.begin(), height.end(), [&](float h) { return std::abs(h) <= contact; });
+    const bool is_pierced = std::min(-*low, *high) > contact;
+    if (!is_pierced && touching != 2) return std::nullopt;  // clear of it, in it, or at a point of it
 
     const Vec3 doubled = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
     const Vec3 normal = doubled / glm::length(doubled);
@@ -83,7 +86,7 @@ std::optional<Cut> cut_by(const Ground& ground, const std::array<Vec3, 3>& corne
     const Vec3 foot = corner[nearest] - height[nearest] / glm::dot(slope, ground.normal) * slope;
 
     const Span span = contact_span(corner, height, contact, foot, along);
-    if (!(span.high - span.low > contact)) return std::nullopt;  // touches at a point
+    if (!(span.high - span.low > contact)) return std::nullopt;
     const float cotangent = std::sqrt(std::max(0.0F, 1 - sine * sine)) / sine;
     Cut cut;
     // A little longer, so that no light slips between one triangle's end and the next one's.

@@ -274,7 +274,8 @@ class FlatDivision {
         const Extent kept_extent = extent_of(kept);
         if (is_sliver(kept, node.size)) return std::nullopt;
         const Vec2 across = kept_extent.high - kept_extent.low;
-        const bool is_whole = kept_extent.area >= whole_cell_share * across.x * across.y;
+        const bool is_whole =
+            kept_extent.area >= whole_cell_share * across.x * across.y && is_within(kept_extent, part.bounds);
         // The size of what a border cuts off is that of its cell: it stands among such.
         const bool has_own_size = is_whole || !part.bounds.empty();
         shape.origin = plane_.to_body(has_own_size ? kept_extent.low : node.low);
@@ -282,6 +283,17 @@ class FlatDivision {
         shape.edge_v = (has_own_size ? across.y : node.size) * plane_.edge_v;
         if (!is_whole) add_fragments(kept, kept_extent.area, shape);
         return shape;
+    }
+
+    /// Whether the corners of a part's bounds keep off its cuts: one may clip no more than a corner.
+    [[nodiscard]] static bool is_within(const Extent& e, const std::vector<PartBound>& bounds) {
+        return std::all_of(bounds.begin(), bounds.end(), [&](const PartBound& bound) {
+            const float sign = bound.keep == Keep::above ? 1.0F : -1.0F;
+            const std::array corners{e.low, Vec2(e.high.x, e.low.y), e.high, Vec2(e.low.x, e.high.y)};
+            return std::all_of(corners.begin(), corners.end(), [&](const Vec2& corner) {
+                return sign * bound.line.distance(corner) >= 0.9F * bound.kerf_m;
+            });
+        });
     }
 
     /// What of a part is far enough from the cuts.
