@@ -8,14 +8,21 @@ namespace afterglow {
 namespace {
 
 constexpr float tolerance_per_lift = 0.1F;  // what rounding leaves of a place in the scene, and room
+// Walls around a floor divide nothing of it, and a patch should be whole for closed forms; but where one
+// leans, lines from points beneath it must not start beyond.
+constexpr float upright_kerf_per_lift = 1.4F;
 
 struct CutLayer {
     const PlaneGrid& plane;
     GridCuts out;
+    float upright_kerf_m;
     Vec2 end, tolerance;  // the far corner of the grid; in cells
 
     CutLayer(const PlaneGrid& p, float lift_m)
-        : plane(p), end(p.grid.cells_u, p.grid.cells_v), tolerance(tolerance_per_lift * lift_m / p.cell_m) {
+        : plane(p),
+          upright_kerf_m(upright_kerf_per_lift * lift_m),
+          end(p.grid.cells_u, p.grid.cells_v),
+          tolerance(tolerance_per_lift * lift_m / p.cell_m) {
         out.tolerance_m = tolerance_per_lift * lift_m;
     }
 
@@ -32,9 +39,11 @@ struct CutLayer {
         const auto segment =
             clip({plane.grid.cell_at(cut.from), plane.grid.cell_at(cut.to)}, -tolerance, end + tolerance);
         if (!segment || glm::length(plane.cell_m * (segment->to - segment->from)) <= out.tolerance_m) return;
+        const bool on_border = is_on_border(*segment);
+        if (on_border && cut.kerf_m < upright_kerf_m) return;
         const auto number = static_cast<Index>(out.list.size());
-        out.list.push_back({*segment, line_through(segment->from, segment->to, plane.cell_m), cut.kerf_m,
-                            is_on_border(*segment)});
+        out.list.push_back(
+            {*segment, line_through(segment->from, segment->to, plane.cell_m), cut.kerf_m, on_border});
         if (out.of_cell.empty())
             out.of_cell.resize(static_cast<std::size_t>(end.x) * static_cast<std::size_t>(end.y));
         // Row by row, since a cut across the grid touches few of the cells in its bounds.

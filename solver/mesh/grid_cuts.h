@@ -19,6 +19,7 @@ struct GridCuts {
     [[nodiscard]] std::vector<Index> touching(std::span<const Index> among, const CellSquare& square) const;
 };
 
+/// Cuts along the outer border of the grid are left out where what stands there is upright.
 /// Thread-safety: pure.
 GridCuts lay_cuts(const PlaneGrid& plane, std::span<const Cut> cuts, Side side, float lift_m);
 
