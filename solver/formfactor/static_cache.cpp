@@ -11,7 +11,7 @@ namespace afterglow {
 namespace {
 
 // Changes whenever the layout below or the meaning of a line changes.
-constexpr std::uint64_t file_version = 1;
+constexpr std::uint64_t file_version = 2;
 constexpr std::uint64_t file_mark = 0x30305f776f6c6741U;
 
 struct Header {

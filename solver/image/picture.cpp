@@ -31,18 +31,25 @@ SeenPoint look_at(const LitWorld& lit, const Ray& ray, const Hit& hit) {
         return seen;
     }
     const Material& material = lit.materials[lit.world->bodies[hit.body].triangles[hit.triangle].material];
-    seen.surface = 2 * lit.mesh->surfaces.of_triangle[hit.body][hit.triangle] + static_cast<Index>(hit.side);
+    const Index surface = lit.mesh->surfaces.of_triangle[hit.body][hit.triangle];
+    seen.surface = 2 * surface + static_cast<Index>(hit.side);
     seen.radiance = emitted_by(material, hit.side);
     seen.reflectance = reflectance_at(*lit.world, material, hit);
     if (max_channel(seen.reflectance) <= 0) return seen;
 
-    seen.radiance += seen.reflectance / pi * interpolated_irradiance(lit, ray, hit);
-
     const Pose& pose = lit.caster->pose(hit.body);
+    const Vec3 at = ray.origin + hit.distance * ray.direction;
+    const Vec3 in_body = hit.body == furniture ? at : glm::conjugate(pose.rotation) * (at - pose.translation);
+    const Vec3 in_direction =
+        hit.body == furniture ? ray.direction : glm::conjugate(pose.rotation) * ray.direction;
+    const bool slipped = lit.mesh->slipped(surface, hit.side, in_body, in_direction);
+    if (!slipped) seen.radiance += seen.reflectance / pi * interpolated_irradiance(lit, ray, hit);
+
     const float sign = hit.side == Side::front ? 1.0F : -1.0F;
     seen.normal = pose.direction(sign * lit.normals->at(hit.body, hit.triangle, hit.u, hit.v));
-    seen.position =
-        ray.origin + hit.distance * ray.direction + lit.lift_m * normal_at(*lit.world, *lit.caster, hit);
+    // Where the ray slipped past something, the light is that of the side it came from.
+    seen.position = slipped ? pose.point(lit.mesh->just_before(surface, in_body, in_direction))
+                            : at + lit.lift_m * normal_at(*lit.world, *lit.caster, hit);
     return seen;
 }
 

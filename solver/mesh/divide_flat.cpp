@@ -1,99 +1,45 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <optional>
+#include <utility>
 
-#include "solver/base/error.h"
-#include "solver/mesh/clip.h"
+#include "solver/mesh/grid_cuts.h"
 #include "solver/mesh/patch_shape.h"
+#include "solver/mesh/plane_grid.h"
+#include "solver/mesh/split_cell.h"
 
 namespace afterglow {
 
 namespace {
 
-constexpr double max_cells = 4e6;
 constexpr float whole_cell_share = 0.9999F;  // covered by this much, a cell counts as a whole rectangle
 constexpr std::array<std::array<int, 2>, 8> neighbours{
     {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
-constexpr float sliver_share = 1e-5F;  // below it, the neighbouring cell answers for the sliver
+constexpr float smallest_crowded = 0.125F;  // cells with too many cuts are halved down to this
+constexpr float sliver_share = 1e-5F;       // below it, the neighbouring cell answers for the sliver
 
-/// Along the longest border edge of the surface, so that rectangles fall into whole cells.
-Vec3 main_direction(const Body& body, const Surface& surface) {
-    std::map<std::pair<std::array<float, 3>, std::array<float, 3>>, int> uses;
-    const auto as_key = [](const Vec3& p) { return std::array{p.x, p.y, p.z}; };
-    for (const Index t : surface.triangles) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            auto a = as_key(body.positions[body.triangles[t].vertices[k]]);
-            auto b = as_key(body.positions[body.triangles[t].vertices[(k + 1) % 3]]);
-            if (b < a) std::swap(a, b);
-            ++uses[{a, b}];
-        }
-    }
-    Vec3 longest(0);
-    for (const auto& [edge, count] : uses) {
-        const Vec3 along(edge.second[0] - edge.first[0], edge.second[1] - edge.first[1],
-                         edge.second[2] - edge.first[2]);
-        // A hair longer does not count: equal edges must not be told apart by rounding.
-        if (count == 1 && glm::length(along) > 1.0001F * glm::length(longest)) longest = along;
-    }
-    // A surface folded onto itself has no border; any direction in its plane serves.
-    if (longest == Vec3(0)) longest = Frame(surface.normal).x;
-    return glm::normalize(longest - glm::dot(longest, surface.normal) * surface.normal);
-}
-
-struct PlaneGrid {
-    SurfaceGrid grid;
-    Vec3 edge_u, edge_v;  // of one cell
-    float cell_area;
-};
-
-PlaneGrid lay_grid(const Body& body, const Surface& surface, float size_m) {
-    const Vec3 u = main_direction(body, surface);
-    const Vec3 v = glm::cross(surface.normal, u);
-    const Vec3 base = body.positions[body.triangles[surface.triangles.front()].vertices[0]];
-    Vec2 low(0), high(0);
-    for (const Index t : surface.triangles) {
-        for (const Index vertex : body.triangles[t].vertices) {
-            const Vec3 d = body.positions[vertex] - base;
-            const Vec2 at(glm::dot(d, u), glm::dot(d, v));
-            low = glm::min(low, at);
-            high = glm::max(high, at);
-        }
-    }
-    const Vec2 extent = glm::max(high - low, Vec2(1e-12F));
-    const double wanted_u = std::max(1.0, std::ceil(static_cast<double>(extent.x) / size_m - 1e-3));
-    const double wanted_v = std::max(1.0, std::ceil(static_cast<double>(extent.y) / size_m - 1e-3));
-    if (wanted_u * wanted_v > max_cells)
-        throw Error(ErrorKind::too_large, "patch_size",
-                    "a surface of " + body.name +
-                        " would be divided into more than 4 million cells; use larger patches");
-    const Vec2 cell(extent.x / static_cast<float>(wanted_u), extent.y / static_cast<float>(wanted_v));
-    PlaneGrid out;
-    out.grid.origin = base + low.x * u + low.y * v;
-    out.grid.per_metre_u = u / cell.x;
-    out.grid.per_metre_v = v / cell.y;
-    out.grid.cells_u = static_cast<int>(wanted_u);
-    out.grid.cells_v = static_cast<int>(wanted_v);
-    out.edge_u = u * cell.x;
-    out.edge_v = v * cell.y;
-    out.cell_area = cell.x * cell.y;
-    return out;
-}
-
-/// A cell or a part of one on its way to a patch.
+/// A cell or a quarter of one on its way to patches.
 struct Node {
     Vec2 low{0};
     float size = 1;
     std::vector<ClipPolygon> pieces;  // of the surface's triangles
+    std::vector<Index> cuts;          // that touch it
     Index first_child = no_index;     // of four, once divided
 
     [[nodiscard]] bool is_leaf() const { return first_child == no_index; }
 };
 
-/// Area in cells and its first moment.
+/// Area in cells, its first moment, and its bounds.
 struct Extent {
     float area = 0;
     Vec2 moment{0};
+    Vec2 low{1e30F}, high{-1e30F};
+
+    void add(const ClipCorner& c) {
+        low = glm::min(low, c.cell);
+        high = glm::max(high, c.cell);
+    }
 };
 
 /// Calls `visit(a, b, c, area)` for the triangles that a polygon falls into.
@@ -109,43 +55,37 @@ void for_triangles(const ClipPolygon& polygon, const Visit& visit) {
 
 class FlatDivision {
   public:
-    FlatDivision(const World& world, const Surface& surface, Side side, const MeshConfig& config)
+    FlatDivision(const World& world, const Surface& surface, const SurfaceSide& on, const MeshConfig& config)
         : world_(world),
           body_(world.bodies[surface.body]),
           surface_(surface),
-          side_(side),
+          side_(on.side),
           config_(config),
-          plane_(lay_grid(body_, surface, config.patch_size_m)) {
-        for (int v = 0; v < plane_.grid.cells_v; ++v)
-            for (int u = 0; u < plane_.grid.cells_u; ++u) nodes_.push_back({Vec2(u, v), 1, {}, no_index});
+          plane_(lay_grid(body_, surface, config.patch_size_m)),
+          cuts_(lay_cuts(plane_, on.cuts, on.side, on.lift_m)) {
+        for (int v = 0; v < plane_.grid.cells_v; ++v) {
+            for (int u = 0; u < plane_.grid.cells_u; ++u) {
+                nodes_.push_back({Vec2(u, v), 1, {}, {}, no_index});
+                if (!cuts_.list.empty()) nodes_.back().cuts = cuts_.of_cell[cell_index(u, v)];
+            }
+        }
     }
 
     SurfaceShapes run() {
         for (const Index t : surface_.triangles) add_triangle(t);
-        if (config_.is_too_coarse) {
-            for (Index root = 0, roots = static_cast<Index>(nodes_.size()); root < roots; ++root)
-                refine(root);
-            while (balance()) {
-            }
+        for (Index root = 0, roots = static_cast<Index>(nodes_.size()); root < roots; ++root) refine(root);
+        while (balance()) {
         }
         return emit();
     }
 
   private:
-    [[nodiscard]] Vec2 to_cell(const Vec3& p) const {
-        const Vec3 d = p - plane_.grid.origin;
-        return {glm::dot(d, plane_.grid.per_metre_u), glm::dot(d, plane_.grid.per_metre_v)};
-    }
-    [[nodiscard]] Vec3 to_body(const Vec2& cell) const {
-        return plane_.grid.origin + cell.x * plane_.edge_u + cell.y * plane_.edge_v;
-    }
-
     void add_triangle(Index t) {
         ClipPolygon whole;
         whole.triangle = t;
         Vec2 low(1e30F), high(-1e30F);
         for (std::size_t k = 0; k < 3; ++k) {
-            ClipCorner corner{to_cell(body_.positions[body_.triangles[t].vertices[k]]), Vec3(0)};
+            ClipCorner corner{plane_.grid.cell_at(body_.positions[body_.triangles[t].vertices[k]]), Vec3(0)};
             corner.barycentric[static_cast<int>(k)] = 1;
             low = glm::min(low, corner.cell);
             high = glm::max(high, corner.cell);
@@ -173,43 +113,69 @@ class FlatDivision {
                static_cast<std::size_t>(u);
     }
 
-    [[nodiscard]] static Extent extent_of(const Node& node) {
+    [[nodiscard]] static Extent extent_of(const std::vector<ClipPolygon>& pieces) {
         Extent extent;
-        for (const ClipPolygon& piece : node.pieces) {
+        for (const ClipPolygon& piece : pieces) {
             for_triangles(piece,
                           [&](const ClipCorner& a, const ClipCorner& b, const ClipCorner& c, float area) {
                               extent.area += area;
                               extent.moment += area / 3.0F * (a.cell + b.cell + c.cell);
+                              for (const ClipCorner& corner : {a, b, c}) extent.add(corner);
                           });
         }
         return extent;
     }
-    [[nodiscard]] static bool is_empty(const Node& node) {
-        return extent_of(node).area < sliver_share * node.size * node.size;
+    [[nodiscard]] static bool is_sliver(const std::vector<ClipPolygon>& pieces, float size) {
+        return extent_of(pieces).area < sliver_share * size * size;
+    }
+    [[nodiscard]] static bool is_empty(const Node& node) { return is_sliver(node.pieces, node.size); }
+
+    [[nodiscard]] CellSquare square_of(const Node& node) const {
+        return {node.low, node.size, plane_.cell_m, cuts_.tolerance_m};
+    }
+    [[nodiscard]] SplitCell parts_of(const Node& node) const {
+        if (node.cuts.empty()) return {0, {}, {{node.pieces, {}}}};
+        std::vector<CellCut> cuts;
+        for (const Index c : node.cuts) cuts.push_back(cuts_.list[c]);
+        return split_cell(node.pieces, cuts, square_of(node));
     }
 
     // --- refinement
 
     void refine(Index n) {
-        const float edge = nodes_[n].size * std::max(glm::length(plane_.edge_u), glm::length(plane_.edge_v));
-        if (0.5F * edge < config_.finest_m || is_empty(nodes_[n])) return;
-        const PatchShape shape = shape_of(nodes_[n]);
-        if (!config_.is_too_coarse(shape, surface_.body, side_)) return;
+        if (is_empty(nodes_[n]) || !(is_crowded(nodes_[n]) || is_too_coarse(nodes_[n]))) return;
         divide(n);
         for (Index q = 0; q < 4; ++q) refine(nodes_[n].first_child + q);
+    }
+
+    [[nodiscard]] static bool is_crowded(const Node& node) {
+        return node.cuts.size() > most_cuts_in_cell && node.size > smallest_crowded;
+    }
+
+    [[nodiscard]] bool is_too_coarse(const Node& node) const {
+        const float edge = node.size * std::max(plane_.cell_m.x, plane_.cell_m.y);
+        if (!config_.is_too_coarse || 0.5F * edge < config_.finest_m) return false;
+        const auto is_too_coarse_in = [&](const CellPart& part) {
+            const auto shape = shape_of(node, part);
+            return shape && config_.is_too_coarse(*shape, surface_.body, side_);
+        };
+        const SplitCell split = parts_of(node);
+        return std::any_of(split.parts.begin(), split.parts.end(), is_too_coarse_in);
     }
 
     void divide(Index n) {
         const auto first = static_cast<Index>(nodes_.size());
         const float half = 0.5F * nodes_[n].size;
         for (Index q = 0; q < 4; ++q) {
-            Node child{nodes_[n].low + half * CellTree::corner_of_quarter(q), half, {}, no_index};
+            Node child{nodes_[n].low + half * CellTree::corner_of_quarter(q), half, {}, {}, no_index};
             for (const ClipPolygon& piece : nodes_[n].pieces)
                 add_piece(child, clip_to_square(piece, child.low, half));
+            child.cuts = cuts_.touching(nodes_[n].cuts, square_of(child));
             nodes_.push_back(std::move(child));
         }
         nodes_[n].first_child = first;
         nodes_[n].pieces.clear();
+        nodes_[n].cuts.clear();
     }
 
     [[nodiscard]] Index leaf_at(const Vec2& at) const {
@@ -257,17 +223,12 @@ class FlatDivision {
                 for (int v = v0; v < std::min(v0 + tile, plane_.grid.cells_v); ++v)
                     for (int u = u0; u < std::min(u0 + tile, plane_.grid.cells_u); ++u)
                         out.tree.cells[cell_index(u, v)] = emit_node(nodes_[cell_index(u, v)], out);
+        add_dividers(out.tree, cuts_);
         return out;
     }
 
     Index emit_node(const Node& node, SurfaceShapes& out) const {
-        if (node.is_leaf()) {
-            if (is_empty(node)) return no_index;
-            out.shapes.push_back(shape_of(node));
-            if (world_.materials[surface_.material].texture != no_index)
-                out.shapes.back().texture_mean = mean_colour(node);
-            return static_cast<Index>(out.shapes.size() - 1);
-        }
+        if (node.is_leaf()) return is_empty(node) ? no_index : emit_leaf(node, out);
         const auto quarter = static_cast<Index>(out.tree.quarters.size());
         out.tree.quarters.emplace_back();
         for (Index q = 0; q < 4; ++q) {
@@ -277,39 +238,93 @@ class FlatDivision {
         return CellTree::divided | quarter;
     }
 
-    [[nodiscard]] PatchShape shape_of(const Node& node) const {
-        const Extent extent = extent_of(node);
+    Index emit_leaf(const Node& node, SurfaceShapes& out) const {
+        const SplitCell split = parts_of(node);
+        std::vector<Index> item_of_part;
+        for (const CellPart& part : split.parts) {
+            auto shape = shape_of(node, part);
+            item_of_part.push_back(shape ? static_cast<Index>(out.shapes.size()) : no_index);
+            if (!shape) continue;
+            if (world_.materials[surface_.material].texture != no_index)
+                shape->texture_mean = mean_colour(part);
+            out.shapes.push_back(std::move(*shape));
+        }
+        const auto first = static_cast<Index>(out.tree.splits.size());
+        const auto entry = [&](Index local) {
+            if (local == no_index) return local;
+            return CellTree::is_split(local) ? local + first : item_of_part[local];
+        };
+        for (CellTree::Split line : split.splits) {
+            line.part = {entry(line.part[0]), entry(line.part[1])};
+            out.tree.splits.push_back(line);
+        }
+        return entry(split.root);
+    }
+
+    /// Nothing for slivers: too small, or no wider than what must be kept off.
+    [[nodiscard]] std::optional<PatchShape> shape_of(const Node& node, const CellPart& part) const {
+        const Extent extent = extent_of(part.pieces);
         const float whole = node.size * node.size;
+        if (extent.area < sliver_share * whole) return std::nullopt;
         PatchShape shape;
         shape.normal = surface_.normal;
-        shape.area_m2 = std::min(extent.area, whole) * plane_.cell_area;
-        shape.centre = to_body(extent.moment / extent.area);
-        shape.origin = to_body(node.low);
-        shape.edge_u = node.size * plane_.edge_u;
-        shape.edge_v = node.size * plane_.edge_v;
-        if (extent.area < whole_cell_share * whole) add_fragments(node, extent.area, shape);
+        shape.area_m2 = std::min(extent.area, whole) * plane_.cell_area_m2();
+        shape.centre = plane_.to_body(extent.moment / extent.area);
+        const std::vector<ClipPolygon> kept = kept_of(part);
+        const Extent kept_extent = extent_of(kept);
+        if (is_sliver(kept, node.size)) return std::nullopt;
+        const Vec2 across = kept_extent.high - kept_extent.low;
+        const bool is_whole =
+            kept_extent.area >= whole_cell_share * across.x * across.y && is_within(kept_extent, part.bounds);
+        // The size of what a border cuts off is that of its cell: it stands among such.
+        const bool has_own_size = is_whole || !part.bounds.empty();
+        shape.origin = plane_.to_body(has_own_size ? kept_extent.low : node.low);
+        shape.edge_u = (has_own_size ? across.x : node.size) * plane_.edge_u;
+        shape.edge_v = (has_own_size ? across.y : node.size) * plane_.edge_v;
+        if (!is_whole) add_fragments(kept, kept_extent.area, shape);
         return shape;
     }
 
-    void add_fragments(const Node& node, float total, PatchShape& shape) const {
+    /// Whether the corners of a part's bounds keep off its cuts: one may clip no more than a corner.
+    [[nodiscard]] static bool is_within(const Extent& e, const std::vector<PartBound>& bounds) {
+        return std::all_of(bounds.begin(), bounds.end(), [&](const PartBound& bound) {
+            const float sign = bound.keep == Keep::above ? 1.0F : -1.0F;
+            const std::array corners{e.low, Vec2(e.high.x, e.low.y), e.high, Vec2(e.low.x, e.high.y)};
+            return std::all_of(corners.begin(), corners.end(), [&](const Vec2& corner) {
+                return sign * bound.line.distance(corner) >= 0.9F * bound.kerf_m;
+            });
+        });
+    }
+
+    /// What of a part is far enough from the cuts.
+    [[nodiscard]] static std::vector<ClipPolygon> kept_of(const CellPart& part) {
+        std::vector<ClipPolygon> kept = part.pieces;
+        for (const PartBound& bound : part.bounds) {
+            for (ClipPolygon& piece : kept) piece = clip(piece, bound.line, bound.kerf_m, bound.keep);
+            std::erase_if(kept, [](const ClipPolygon& piece) { return piece.count < 3; });
+        }
+        return kept;
+    }
+
+    void add_fragments(const std::vector<ClipPolygon>& pieces, float total, PatchShape& shape) const {
         float sum = 0;
-        for (const ClipPolygon& piece : node.pieces) {
-            for_triangles(
-                piece, [&](const ClipCorner& a, const ClipCorner& b, const ClipCorner& c, float area) {
-                    sum += area;
-                    const Vec3 corner = to_body(a.cell);
-                    shape.fragments.push_back({corner, to_body(b.cell) - corner, to_body(c.cell) - corner,
-                                               surface_.normal, sum / total});
-                });
+        for (const ClipPolygon& piece : pieces) {
+            for_triangles(piece, [&](const ClipCorner& a, const ClipCorner& b, const ClipCorner& c,
+                                     float area) {
+                sum += area;
+                const Vec3 corner = plane_.to_body(a.cell);
+                shape.fragments.push_back({corner, plane_.to_body(b.cell) - corner,
+                                           plane_.to_body(c.cell) - corner, surface_.normal, sum / total});
+            });
         }
         shape.fragments.back().cumulative_share = 1;
     }
 
-    [[nodiscard]] Rgb mean_colour(const Node& node) const {
+    [[nodiscard]] Rgb mean_colour(const CellPart& part) const {
         const Texture& texture = world_.textures[world_.materials[surface_.material].texture];
         Rgb colour(0);
         float sum = 0;
-        for (const ClipPolygon& piece : node.pieces) {
+        for (const ClipPolygon& piece : part.pieces) {
             for_triangles(piece,
                           [&](const ClipCorner& a, const ClipCorner& b, const ClipCorner& c, float area) {
                               const Index t = piece.triangle;
@@ -334,13 +349,15 @@ class FlatDivision {
     Side side_;
     const MeshConfig& config_;
     PlaneGrid plane_;
+    GridCuts cuts_;
     std::vector<Node> nodes_;  // the first ones are the cells
 };
 
 }  // namespace
 
-SurfaceShapes divide_flat(const World& world, const Surface& surface, Side side, const MeshConfig& config) {
-    return FlatDivision(world, surface, side, config).run();
+SurfaceShapes divide_flat(const World& world, const Surface& surface, const SurfaceSide& on,
+                          const MeshConfig& config) {
+    return FlatDivision(world, surface, on, config).run();
 }
 
 Rgb mean_texture(const Texture& texture, const std::array<Vec2, 3>& corners) {

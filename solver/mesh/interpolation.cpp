@@ -78,8 +78,9 @@ Stencil Interpolation::on_grid(const CellTree& tree, const Vec2& at) {
     const Vec2 place = glm::clamp(at, Vec2(0), end);
     const float reach = 0.5F * tree.leaf_at(place).size;
     Stencil stencil;
-    tree.for_overlaps(place - reach, place + reach,
-                      [&](Index patch, float area) { stencil.add(patch, area); });
+    tree.for_overlaps(place - reach, place + reach, [&](Index patch, float area, const Vec2& centre) {
+        if (!tree.is_divided_between(place, centre)) stencil.add(patch, area);
+    });
     if (stencil.count > 0) normalise(stencil);
     return stencil;
 }

@@ -10,7 +10,7 @@ namespace afterglow {
 
 /// The patches whose values make up the value at a point, and their weights (sum 1, all ≥ 0).
 struct Stencil {
-    static constexpr std::size_t most = 12;
+    static constexpr std::size_t most = 24;
     std::array<Index, most> patch{};
     std::array<float, most> weight{};
     std::size_t count = 0;
@@ -24,7 +24,7 @@ struct Stencil {
 
 /// Smooth values from patch values: on flat surfaces the mean over a window as large as the cell at the
 /// point, which between equal cells is bilinear; on curved ones weighted by distance among a cluster and its
-/// neighbours. Never crosses the border of a surface or its two sides.
+/// neighbours. Never crosses the border of a surface, its two sides, or what stands on it.
 /// Thread-safety: const after construction; the mesh must outlive it.
 class Interpolation {
   public:

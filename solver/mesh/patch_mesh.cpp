@@ -37,10 +37,11 @@ void add_side(PatchMesh& mesh, SurfaceShapes divided, Index surface, Side side) 
     const auto s = static_cast<std::size_t>(side);
     const Index first = mesh.size();
     const auto number = [&](Index& entry) {
-        if (entry != no_index && !CellTree::is_divided(entry)) entry += first;
+        if (entry != no_index && !CellTree::is_divided(entry) && !CellTree::is_split(entry)) entry += first;
     };
     for (Index& entry : divided.tree.cells) number(entry);
     for (auto& quarter : divided.tree.quarters) std::for_each(quarter.begin(), quarter.end(), number);
+    for (auto& split : divided.tree.splits) std::for_each(split.part.begin(), split.part.end(), number);
     for (std::size_t k = 0; k < divided.triangles.size(); ++k)
         for (const Index t : divided.triangles[k])
             mesh.patch_of_triangle[mesh.surfaces.list[surface].body][s][t] = first + static_cast<Index>(k);
@@ -77,16 +78,17 @@ PatchPoint point_within(const PatchPoint& origin, const Vec3& edge_u, const Vec3
 
 /// All wanted sides, [surface][side].
 std::vector<std::array<SurfaceShapes, 2>> divide_all(const World& world, const Surfaces& surfaces,
-                                                     const SideMask& wanted, const MeshConfig& config,
-                                                     const Context& context) {
+                                                     const SideMask& wanted, const Cuts& cuts,
+                                                     const MeshConfig& config, const Context& context) {
     std::vector<std::array<SurfaceShapes, 2>> divided(surfaces.list.size());
     context.for_chunks(2 * divided.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t s = i / 2, side = i % 2;
             if (!wanted[s][side]) continue;
             const Surface& surface = surfaces.list[s];
+            const SurfaceSide on{static_cast<Side>(side), cuts.of_surface[s], cuts.lift_m};
             divided[s][side] = surface.kind == Surface::Kind::flat
-                                   ? divide_flat(world, surface, static_cast<Side>(side), config)
+                                   ? divide_flat(world, surface, on, config)
                                    : divide_curved(world, surface, config.patch_size_m);
         }
     });
@@ -97,8 +99,10 @@ std::vector<std::array<SurfaceShapes, 2>> divide_all(const World& world, const S
 
 PatchMesh make_patches(const World& world, Surfaces surfaces, const SideMask& wanted,
                        const MeshConfig& config, const Context& context) {
-    auto divided = divide_all(world, surfaces, wanted, config, context);
+    const Cuts cuts = find_cuts(world, surfaces, context);
+    auto divided = divide_all(world, surfaces, wanted, cuts, config, context);
     PatchMesh mesh;
+    mesh.lift_m = cuts.lift_m;
     mesh.surfaces = std::move(surfaces);
     mesh.first_fragment.push_back(0);
     mesh.first_patch_of_body.push_back(0);
@@ -136,11 +140,27 @@ Index PatchMesh::patch_at(Index body_index, Index triangle, Side on, const Vec3&
     // A point on a border can fall just outside the cells that have area: a neighbour answers for it.
     for (int dv = -1; dv <= 1; ++dv) {
         for (int du = -1; du <= 1; ++du) {
-            const Index neighbour = tree.leaf_at(at + leaf.size * Vec2(du, dv)).item;
-            if (neighbour != no_index) return neighbour;
+            const Vec2 beside = at + leaf.size * Vec2(du, dv);
+            const Index neighbour = tree.leaf_at(beside).item;
+            if (neighbour != no_index && !tree.is_divided_between(at, beside)) return neighbour;
         }
     }
     return no_index;
+}
+
+Vec3 PatchMesh::just_before(Index on_surface, const Vec3& position, const Vec3& direction) const {
+    // Back to where the ray was twice a lift above the surface, but not far along it.
+    constexpr float least_cosine = 0.1F;
+    const float cosine = std::abs(glm::dot(direction, surfaces.list[on_surface].normal));
+    return position - 2 * lift_m / std::max(cosine, least_cosine) * direction;
+}
+
+bool PatchMesh::slipped(Index on_surface, Side on, const Vec3& position, const Vec3& direction) const {
+    const CellTree& tree = trees[on_surface][static_cast<std::size_t>(on)];
+    if (tree.dividers.empty()) return false;
+    const SurfaceGrid& grid = grids[on_surface];
+    return tree.is_divided_between(grid.cell_at(position),
+                                   grid.cell_at(just_before(on_surface, position, direction)));
 }
 
 PatchPoint PatchMesh::point_on(Index patch, float s, float t) const {

@@ -34,8 +34,8 @@ struct PatchPoint {
 struct PatchShape {
     float area_m2 = 0;
     Vec3 centre{0}, normal{0};
-    Vec3 origin{0}, edge_u{0}, edge_v{0};  ///< where it is a whole rectangle
-    std::vector<Fragment> fragments;       ///< otherwise
+    Vec3 origin{0}, edge_u{0}, edge_v{0};  ///< a rectangle: all of it, or around its fragments
+    std::vector<Fragment> fragments;       ///< where it is no rectangle
     Rgb texture_mean{1};
 
     /// As PatchMesh::point_on.
@@ -68,12 +68,13 @@ struct PatchMesh {
     std::vector<Index> surface;
     std::vector<Side> side;
     std::vector<Rgb> texture_mean;            ///< mean texture colour over the patch, 1 without a texture
-    std::vector<Vec3> origin;                 ///< of a whole rectangle
-    std::vector<Vec3> edge_u, edge_v;         ///< of a whole rectangle
+    std::vector<Vec3> origin;                 ///< of a whole rectangle, or of one around the rest
+    std::vector<Vec3> edge_u, edge_v;         ///< likewise
     std::vector<std::size_t> first_fragment;  ///< size patches + 1; whole rectangles have none
     std::vector<Fragment> fragments;
 
     Surfaces surfaces;
+    float lift_m = 0;                            ///< see lift_for
     std::vector<SurfaceGrid> grids;              ///< by surface
     std::vector<std::array<CellTree, 2>> trees;  ///< [surface][side] of flat ones: patches; empty where none
     std::vector<std::array<std::vector<Index>, 2>>
@@ -88,7 +89,15 @@ struct PatchMesh {
     /// body's frame.
     [[nodiscard]] Index patch_at(Index body_index, Index triangle, Side on, const Vec3& position) const;
 
-    /// The point that (s, t) in [0,1)² stands for; uniform over the area.
+    /// Where a ray was just before it met a surface: far enough off it that nothing which touches the surface
+    /// can lie between the two places but what the ray has passed. `direction` unit, all in the body's frame.
+    [[nodiscard]] Vec3 just_before(Index on_surface, const Vec3& position, const Vec3& direction) const;
+
+    /// Whether something that stands on a surface's side divides a place where a ray met it from where the
+    /// ray was just before: the ray slipped through where the two touch, and no patch can be told.
+    [[nodiscard]] bool slipped(Index on_surface, Side on, const Vec3& position, const Vec3& direction) const;
+
+    /// The point that (s, t) in [0,1)² stands for; uniform over the area but for what touches a cut.
     [[nodiscard]] PatchPoint point_on(Index patch, float s, float t) const;
 };
 

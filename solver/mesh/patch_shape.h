@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/mesh/cuts.h"
 #include "solver/mesh/patch_mesh.h"
 
 namespace afterglow {
@@ -15,9 +16,17 @@ struct SurfaceShapes {
     std::vector<std::vector<Index>> triangles;  ///< curved: what each shape is made of, of the body
 };
 
+/// A side of a flat surface and what stands on it.
+struct SurfaceSide {
+    Side side = Side::front;
+    std::span<const Cut> cuts;
+    float lift_m = 0;  ///< see lift_for
+};
+
 /// A side of a flat surface as a grid of cells no longer than the asked size, clipped to its triangles, in
-/// 4 × 4 tiles; cells that are too coarse are halved both ways, again and again.
-SurfaceShapes divide_flat(const World& world, const Surface& surface, Side side, const MeshConfig& config);
+/// 4 × 4 tiles; cells that are too coarse are halved both ways, again and again, and then split along cuts.
+SurfaceShapes divide_flat(const World& world, const Surface& surface, const SurfaceSide& on,
+                          const MeshConfig& config);
 
 /// A curved surface as clusters of connected triangles about `size_m` across.
 SurfaceShapes divide_curved(const World& world, const Surface& surface, float size_m);

@@ -8,16 +8,8 @@ namespace afterglow {
 namespace {
 
 constexpr std::size_t blocks_per_chunk = 4;
-constexpr float lift_per_extent = 1e-5F;
 
 }  // namespace
-
-float lift_for(const World& world) {
-    Box box;
-    for (const Body& body : world.bodies)
-        for (const Vec3& p : body.positions) box.add(body.path.at(0).point(p));
-    return box.empty() ? 0 : lift_per_extent * glm::length(box.extent());
-}
 
 SightLines::SightLines(const PatchMesh& mesh, const World& world, Index lines_per_patch, std::uint64_t seed)
     : mesh_(&mesh),
@@ -51,11 +43,15 @@ void SightLines::rays(std::size_t block, Index direction, const Pose& pose, RayP
 
 Index target_of(const Hit& hit, const Ray& ray, const PatchMesh& mesh, const RayCaster& caster) {
     if (hit.body == no_index) return sees_nothing;
-    Vec3 at = ray.origin + hit.distance * ray.direction;
+    Vec3 at = ray.origin + hit.distance * ray.direction, direction = ray.direction;
     if (hit.body != furniture) {
         const Pose& pose = caster.pose(hit.body);
-        at = glm::conjugate(pose.rotation) * (at - pose.translation);
+        const Quat back = glm::conjugate(pose.rotation);
+        at = back * (at - pose.translation);
+        direction = back * direction;
     }
+    if (mesh.slipped(mesh.surfaces.of_triangle[hit.body][hit.triangle], hit.side, at, direction))
+        return sees_inside;
     const Index patch = mesh.patch_at(hit.body, hit.triangle, hit.side, at);
     return patch == no_index ? sees_inside : patch;
 }

@@ -5,6 +5,7 @@
 
 #include "solver/base/context.h"
 #include "solver/base/sampling.h"
+#include "solver/mesh/lift.h"
 #include "solver/mesh/patch_mesh.h"
 #include "solver/visibility/ray_caster.h"
 
@@ -14,9 +15,6 @@ namespace afterglow {
 inline constexpr Index sees_nothing = no_index;  ///< it leaves the scene
 inline constexpr Index sees_inside =
     no_index - 1;  ///< its origin is buried: it meets a side that light cannot reach
-
-/// How far the origins of a world's lines are lifted off their surfaces, metres. Thread-safety: pure.
-float lift_for(const World& world);
 
 /// Sixteen or fewer neighbouring patches whose sight lines share their directions.
 struct PatchBlock {

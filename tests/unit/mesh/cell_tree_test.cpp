@@ -44,7 +44,7 @@ TEST(CellTree, OverlapsAreTheAreasOfTheLeavesWithinARectangle) {
         const Vec2 low(2.5F * unit(random), 1.5F * unit(random));
         const Vec2 high = low + Vec2(0.5F * unit(random), 0.5F * unit(random)) + 0.01F;
         std::map<Index, float> area;
-        made.tree.for_overlaps(low, high, [&](Index item, float a) { area[item] += a; });
+        made.tree.for_overlaps(low, high, [&](Index item, float a, const Vec2&) { area[item] += a; });
         // The same by looking up a fine raster of points.
         constexpr int raster = 64;
         std::map<Index, float> looked_up;
@@ -80,6 +80,38 @@ TEST(CellTree, PlacesOutsideBelongToTheBorder) {
     const RandomTree made(2);
     EXPECT_EQ(made.tree.leaf_at(Vec2(-7, 0.3F)).item, made.tree.leaf_at(Vec2(0, 0.3F)).item);
     EXPECT_EQ(made.tree.leaf_at(Vec2(1e9F, 1.2F)).item, made.tree.leaf_at(Vec2(2.9999F, 1.2F)).item);
+}
+
+/// One cell that is split in three, with a divider along the first of its two lines.
+CellTree split_tree() {
+    CellTree tree;
+    tree.cells_u = tree.cells_v = 1;
+    tree.cells = {CellTree::split | 0};
+    tree.splits = {{line_through(Vec2(0.5F, 1), Vec2(0.5F, 0), Vec2(1)), {0, CellTree::split | 1}},
+                   {line_through(Vec2(0, 0.25F), Vec2(1, 0.25F), Vec2(1)), {1, 2}}};
+    tree.dividers = {{Vec2(0.5F, 0), Vec2(0.5F, 0.6F)}};
+    tree.first_divider = {0, 1};
+    return tree;
+}
+
+TEST(CellTree, SplitLeavesHoldWhatIsOnEitherSideOfTheirLines) {
+    const CellTree tree = split_tree();
+    EXPECT_EQ(tree.leaf_at(Vec2(0.2F, 0.9F)).item, 0U);
+    EXPECT_EQ(tree.leaf_at(Vec2(0.7F, 0.1F)).item, 1U);
+    EXPECT_EQ(tree.leaf_at(Vec2(0.7F, 0.9F)).item, 2U);
+    std::array<float, 3> area{};
+    tree.for_overlaps(Vec2(0.25F, 0), Vec2(1, 0.5F), [&](Index item, float a, const Vec2& centre) {
+        area[item] += a;
+        EXPECT_EQ(tree.leaf_at(centre).item, item);
+    });
+    EXPECT_THAT(area, ::testing::Pointwise(::testing::FloatNear(1e-6F), {0.125F, 0.125F, 0.125F}));
+}
+
+TEST(CellTree, DividersStandBetweenPlacesAsFarAsTheyGo) {
+    const CellTree tree = split_tree();
+    EXPECT_TRUE(tree.is_divided_between(Vec2(0.4F, 0.3F), Vec2(0.6F, 0.3F)));
+    EXPECT_FALSE(tree.is_divided_between(Vec2(0.4F, 0.8F), Vec2(0.6F, 0.8F)));
+    EXPECT_FALSE(tree.is_divided_between(Vec2(0.1F, 0.1F), Vec2(0.4F, 0.3F)));
 }
 
 }  // namespace
