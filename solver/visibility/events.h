@@ -7,7 +7,7 @@ namespace afterglow {
 
 struct EventsConfig {
     int frames_per_window =
-        64;  ///< frames whose events are found together, 1 to 4096; more cost memory, fewer time
+        128;  ///< frames whose events are found together, 1 to 4096; more cost memory, fewer time
 };
 
 /// Finds, for a window of frames at once, in which frame each line of a static patch comes to see something

@@ -100,6 +100,8 @@ struct alignas(64) OwnViews {
     [[nodiscard]] float step_along(std::size_t l) const { return step_z[l]; }
     [[nodiscard]] float step_across(std::size_t l) const { return step_x[l]; }
     static bool may_meet(const Corner&, const Corner&, const Corner&) { return true; }
+    /// Which faces can be nearest is not asked lane by lane.
+    static void leave_out_backs(const TriangleTree&) {}
 
     /// Whether any lane may meet a box of the body in any frame.
     [[nodiscard]] bool may_meet(const Vec3& centre, const Vec3& half) const {
@@ -159,6 +161,7 @@ struct alignas(64) SharedView {
     Axis x, y, z;
     float step_x = 0, step_z = 0, steps = 0, far = 0;
     Span place_x{}, place_y{}, place_z{};  ///< of all lanes
+    bool fronts_only = false;              ///< no face that shows its back can be the nearest
 
     /// A corner, but for each lane's place.
     using Corner = Axis;
@@ -180,17 +183,26 @@ struct alignas(64) SharedView {
                in_z.low + place_z.low + std::min(0.0F, moved_z) < far;
     }
     [[nodiscard]] bool may_meet(const Corner& a, const Corner& b, const Corner& c) const {
+        // Seen along the ray, a front's corners run clockwise.
+        if (fronts_only && (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) >= 0) return false;
         return may_meet_spans({std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x})},
                               {std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y})},
                               {std::min({a.z, b.z, c.z}), std::max({a.z, b.z, c.z})});
     }
     [[nodiscard]] bool may_meet(const Vec3& centre, const Vec3& half) const {
-        const auto along = [&](const Axis& on) {
-            const float middle = dot(on, axis(centre));
-            const float reach = std::abs(on.x) * half.x + std::abs(on.y) * half.y + std::abs(on.z) * half.z;
-            return Span{middle - reach, middle + reach};
-        };
-        return may_meet_spans(along(x), along(y), along(z));
+        return may_meet_spans(along(x, centre, half), along(y, centre, half), along(z, centre, half));
+    }
+    /// From a closed body that stays ahead of the rays' origins, no face can be seen from behind.
+    void leave_out_backs(const TriangleTree& tree) {
+        const TriangleTree::Node& root = tree.nodes.front();
+        const float nearest = along(z, root.centre, root.half).low + place_z.low;
+        fronts_only = tree.closed && nearest + std::min(0.0F, steps * step_z) > 0;
+    }
+
+    static Span along(const Axis& on, const Vec3& centre, const Vec3& half) {
+        const float middle = dot(on, axis(centre));
+        const float reach = std::abs(on.x) * half.x + std::abs(on.y) * half.y + std::abs(on.z) * half.z;
+        return {middle - reach, middle + reach};
     }
 };
 
@@ -315,8 +327,9 @@ void trace_triangle(const Views& views, const MovingFaces& faces, Index triangle
 }
 
 template <class Views>
-void trace_tree(const Views& views, const MovingFaces& faces, TimeBuffer& buffer) {
+void trace_tree(Views views, const MovingFaces& faces, TimeBuffer& buffer) {
     const TriangleTree& tree = faces.tree;
+    views.leave_out_backs(tree);
     // Each step down leaves at most one sibling waiting, and the tree halves: 64 is beyond any count of
     // faces.
     std::array<Index, 64> waiting;

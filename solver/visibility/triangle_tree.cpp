@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "solver/visibility/closed_body.h"
+
 namespace afterglow {
 
 namespace {
@@ -63,7 +65,9 @@ class Builder {
 }  // namespace
 
 TriangleTree make_triangle_tree(const Body& body) {
-    return Builder(body).build();
+    TriangleTree tree = Builder(body).build();
+    tree.closed = is_closed_outwards(body);
+    return tree;
 }
 
 }  // namespace afterglow

@@ -15,6 +15,7 @@ struct TriangleTree {
         Index count = 0;          ///< entries of a leaf; 0: not a leaf
     };
     std::vector<Node> nodes;   ///< the root first; empty for a body without triangles
+    bool closed = false;       ///< see is_closed_outwards
     std::vector<Index> order;  ///< triangles, those of a leaf together
 };
 

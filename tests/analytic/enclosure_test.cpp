@@ -38,15 +38,12 @@ double power(const PatchMesh& mesh, std::span<const Rgb> values) {
     return sum;
 }
 
-class BothVisibilities : public ::testing::TestWithParam<Visibility> {};
-INSTANTIATE_TEST_SUITE_P(Analytic, BothVisibilities,
-                         ::testing::Values(Visibility::retrace, Visibility::back_buffer),
-                         [](const auto& test) {
-                             return std::string(test.param == Visibility::retrace ? "retrace"
-                                                                                  : "back_buffer");
-                         });
+class EveryVisibility : public ::testing::TestWithParam<Visibility> {};
+INSTANTIATE_TEST_SUITE_P(Analytic, EveryVisibility,
+                         ::testing::Values(Visibility::retrace, Visibility::back_buffer, Visibility::events),
+                         [](const auto& test) { return testing::test_name(test.param); });
 
-TEST_P(BothVisibilities, AFurnaceIsUniformWhateverTheActorsDo) {
+TEST_P(EveryVisibility, AFurnaceIsUniformWhateverTheActorsDo) {
     for (const float reflectance : {0.1F, 0.5F, 0.9F}) {
         World world = testing::small_room();
         for (Material& material : world.materials) {
@@ -74,7 +71,7 @@ TEST_P(BothVisibilities, AFurnaceIsUniformWhateverTheActorsDo) {
     }
 }
 
-TEST_P(BothVisibilities, PowerArrivingIsInvariantUnderMotion) {
+TEST_P(EveryVisibility, PowerArrivingIsInvariantUnderMotion) {
     // Closed form 8: Σ A H = Φ/(1−ρ) with one ρ for walls, actors and lamp. It needs reciprocity, which the
     // rows have on average only: so three standard errors over sixteen independent sets of lines.
     constexpr double reflectance = 0.6;

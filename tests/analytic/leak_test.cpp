@@ -204,7 +204,7 @@ void expect_dark_paths(const DarkSide& scene) {
 }
 
 void expect_dark(const DarkSide& scene) {
-    for (const Visibility visibility : {Visibility::retrace, Visibility::back_buffer}) {
+    for (const Visibility visibility : {Visibility::retrace, Visibility::back_buffer, Visibility::events}) {
         expect_dark_patches(scene, visibility);
         expect_dark_pixels(scene, visibility);
     }

@@ -20,11 +20,8 @@ using testing::SolvedWorldConfig;
 
 class MovingOccluder : public ::testing::TestWithParam<Visibility> {};
 INSTANTIATE_TEST_SUITE_P(Analytic, MovingOccluder,
-                         ::testing::Values(Visibility::retrace, Visibility::back_buffer),
-                         [](const auto& test) {
-                             return std::string(test.param == Visibility::retrace ? "retrace"
-                                                                                  : "back_buffer");
-                         });
+                         ::testing::Values(Visibility::retrace, Visibility::back_buffer, Visibility::events),
+                         [](const auto& test) { return testing::test_name(test.param); });
 
 /// A flat actor in the plane z, around the path's x, that is at `from` at time 0 and moves 1 m/s along x.
 void add_slider(World& world, float half_x, float half_y, float z, float from, float seconds) {

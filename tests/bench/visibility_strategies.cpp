@@ -16,7 +16,7 @@
 namespace afterglow {
 namespace {
 
-constexpr int window = 64;
+constexpr int window = 128;
 
 struct Room {
     World world;
@@ -63,7 +63,7 @@ double ms_of(const std::function<void()>& work) {
 struct Row {
     const char* name;
     double ahead_ms = 0;
-    std::vector<double> frame_ms;
+    std::vector<double> frame_ms = {};
 };
 
 /// Sight lines of static patches only, which is where the strategies differ.

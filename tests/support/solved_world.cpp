@@ -1,5 +1,9 @@
 #include "tests/support/solved_world.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "solver/visibility/events.h"
 #include "solver/visibility/reach.h"
 
 namespace afterglow::testing {
@@ -14,7 +18,28 @@ PatchMesh mesh_reached(const World& world, RayCaster& caster, float size) {
     return make_patches(world, std::move(surfaces), reached, {.patch_size_m = size});
 }
 
+// Frames so fine that every time a test looks at is one.
+constexpr FrameClock fine_clock{1000};
+
+std::unique_ptr<VisibilityStrategy> make_strategy(Visibility visibility, const World& world) {
+    switch (visibility) {
+        case Visibility::retrace:
+            return make_retrace();
+        case Visibility::back_buffer:
+            return make_back_buffer();
+        case Visibility::events:
+            return make_events(world, fine_clock, {1});
+    }
+    return nullptr;
+}
+
 }  // namespace
+
+std::string test_name(Visibility visibility) {
+    std::string name(name_of(visibility));
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+}
 
 SolvedWorld::SolvedWorld(World w, const SolvedWorldConfig& c)
     : config(c),
@@ -26,7 +51,7 @@ SolvedWorld::SolvedWorld(World w, const SolvedWorldConfig& c)
       light(mesh, sight, lamps, c.light_lines, mixed(c.seed)),
       visible(make_visible_lines(mesh, sight, light)),
       background_(make_static_lines(mesh, sight, light)),
-      strategy_(c.visibility == Visibility::retrace ? make_retrace() : make_back_buffer()) {
+      strategy_(make_strategy(c.visibility, world)) {
     if (strategy_->needs_background())
         extend_static_lines(background_, mesh, sight, light, caster, c.lines, Context(1));
 }
@@ -34,7 +59,8 @@ SolvedWorld::SolvedWorld(World w, const SolvedWorldConfig& c)
 void SolvedWorld::look(double time_s) {
     const Context context(1);
     caster.set_poses(poses_at(world, time_s));
-    strategy_->update({mesh, sight, light, caster, background_}, {0, config.lines}, visible, context);
+    const int frame = static_cast<int>(std::lround(time_s * fine_clock.frames_per_second));
+    strategy_->update({mesh, sight, light, caster, background_, frame}, {0, config.lines}, visible, context);
     factors = compile_rows(mesh, sight, light, lamps, caster,
                            {visible.patch, config.lines, visible.light_contribution}, context);
     lights = lights_at(world, time_s);

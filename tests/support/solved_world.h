@@ -19,6 +19,9 @@ struct SolvedWorldConfig {
     std::uint64_t seed = 1;                       ///< of all lines
 };
 
+/// A strategy's name as test names may hold it.
+std::string test_name(Visibility visibility);
+
 /// A world taken through the whole solver but the picture: reachable sides into patches, lines, rows, light.
 /// What a frame of a sequence does, with everything in between open to be looked at. Not copied or moved:
 /// its parts point at each other.

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "solver/base/error.h"
+#include "solver/base/stopwatch.h"
 #include "tests/support/worlds.h"
 
 namespace afterglow {
@@ -102,26 +103,47 @@ TEST(Sequence, SameBitsForAnyNumberOfThreads) {
 
 TEST(Sequence, HistoryDoesNotMatter) {
     const Context context(2);
-    SequenceState state = make_state(small_room(), quick(), context);
-    Picture last;
-    for (const int frame : {0, 7, 3, 20, 5})
-        step(
-            state, frame, [&](const Revision& r) { last = r.radiance; }, context);
-    EXPECT_TRUE(same_bits(last, final_of(small_room(), quick(), 5)));
+    for (const Visibility visibility : {Visibility::back_buffer, Visibility::events}) {
+        SequenceConfig config = quick();
+        config.visibility = visibility;
+        SequenceState state = make_state(small_room(), config, context);
+        Picture last;
+        for (const int frame : {0, 7, 3, 140, 5})
+            step(
+                state, frame, [&](const Revision& r) { last = r.radiance; }, context);
+        EXPECT_TRUE(same_bits(last, final_of(small_room(), config, 5))) << name_of(visibility);
+    }
 }
 
-TEST(Sequence, BothVisibilitiesGiveTheSamePicture) {
+TEST(Sequence, WorkAheadIsToldAndInNoFramesTotal) {
+    SequenceConfig config = quick();
+    config.visibility = Visibility::events;
+    SequenceState state = make_state(small_room(), config, Context(2));
+    const Stopwatch watch;
+    Milliseconds frames{};
+    for (const int frame : {0, 1, 140}) frames += step(state, frame, {}, Context(2)).total;
+    const auto& ahead = state.statistics().work_ahead;
+    ASSERT_EQ(ahead.size(), 2U);
+    EXPECT_TRUE(ahead[0].frames.contains(0) && ahead[0].frames.contains(1));
+    EXPECT_TRUE(ahead[1].frames.contains(140));
+    EXPECT_GT(total(ahead).count(), 0);
+    EXPECT_LE((frames + total(ahead) + state.statistics().static_pass).count(), watch.elapsed().count());
+}
+
+TEST(Sequence, EveryVisibilityGivesTheSamePicture) {
     SequenceConfig config = quick();
     config.visibility = Visibility::retrace;
     const Picture retraced = final_of(small_room(), config, 12);
-    config.visibility = Visibility::back_buffer;
-    const Picture kept = final_of(small_room(), config, 12);
-    double difference = 0, sum = 0;
-    for (std::size_t k = 0; k < kept.pixels.size(); ++k) {
-        difference += std::abs(kept.pixels[k].x - retraced.pixels[k].x);
-        sum += retraced.pixels[k].x;
+    for (const Visibility visibility : {Visibility::back_buffer, Visibility::events}) {
+        config.visibility = visibility;
+        const Picture kept = final_of(small_room(), config, 12);
+        double difference = 0, sum = 0;
+        for (std::size_t k = 0; k < kept.pixels.size(); ++k) {
+            difference += std::abs(kept.pixels[k].x - retraced.pixels[k].x);
+            sum += retraced.pixels[k].x;
+        }
+        EXPECT_LE(difference, 1e-4 * sum) << name_of(visibility);
     }
-    EXPECT_LE(difference, 1e-4 * sum);
 }
 
 TEST(Sequence, AStopLeavesTheStateUsable) {
