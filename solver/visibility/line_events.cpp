@@ -32,10 +32,10 @@ class Targets {
     std::span<const Index> of(const TimeBuffer& buffer, std::size_t lane, const Ray& ray, Index background) {
         const int first = buffer.first(lane), last = buffer.last(lane);
         for (int f = first; f <= last;) {
-            const TimeBuffer::Face face = buffer.face(lane, f);
+            const Index face = buffer.face(lane, f);
             int end = f;
             while (end < last && buffer.face(lane, end + 1) == face && steady(face, end)) ++end;
-            if (face.body == no_index) {
+            if (face == no_index) {
                 std::fill(at(f), at(end) + 1, background);
             } else {
                 *at(f) = target(buffer, lane, f, ray);
@@ -49,8 +49,8 @@ class Targets {
 
   private:
     std::vector<Index>::iterator at(int frame) { return seen_.begin() + frame; }
-    [[nodiscard]] bool steady(const TimeBuffer::Face& face, int frame) const {
-        return face.body == no_index || scene_.actors.is_steady_after(face.body, frame);
+    [[nodiscard]] bool steady(Index face, int frame) const {
+        return face == no_index || scene_.actors.is_steady_after(scene_.actors.face(face).body, frame);
     }
 
     /// The point that is seen runs along a line on the face, and patches are convex: between two places on
@@ -68,7 +68,7 @@ class Targets {
     }
 
     [[nodiscard]] Index target(const TimeBuffer& buffer, std::size_t lane, int frame, const Ray& ray) const {
-        const TimeBuffer::Face& face = buffer.face(lane, frame);
+        const SweptActors::Face face = scene_.actors.face(buffer.face(lane, frame));
         const Body& body = scene_.world.bodies[face.body];
         const Pose& pose = scene_.actors.pose(face.body, frame);
         const Quat back = glm::conjugate(pose.rotation);
@@ -195,7 +195,7 @@ LineEvents find_light_events(const EventScene& scene, const Context& context) {
             for (std::size_t lane = 0; lane < block.count; ++lane) {
                 seen.clear();
                 for (int f = buffer.first(lane); f <= buffer.last(lane); ++f)
-                    seen.push_back(buffer.face(lane, f).body == no_index ? lamp_open : lamp_hidden);
+                    seen.push_back(buffer.face(lane, f) == no_index ? lamp_open : lamp_hidden);
                 put_events(static_cast<Index>(line + lane), lamp_open, buffer.first(lane), seen, frames,
                            part);
             }

@@ -287,12 +287,11 @@ Cuts cut(const Views& views, const typename Views::Corner& a, const typename Vie
     return out;
 }
 
-/// The frames in which one lane meets the cut, and how far off.
+/// Puts in the frames in which one lane meets the cut, and how far off it is.
 template <class Views>
 void put_frames(const Views& views, const Cuts& cuts, std::size_t l, const MovingFaces& faces, Index triangle,
                 TimeBuffer& buffer) {
-    const float low_x = cuts.low_x[l], high_x = cuts.high_x[l];
-    const float step_x = views.step_across(l);
+    const float low_x = cuts.low_x[l], high_x = cuts.high_x[l], step_x = views.step_across(l);
     float first = 0, last = views.steps;
     if (step_x > 0) {
         // x = -k · step: the far end of the cut comes first. Compared as floats, which cannot overflow.
@@ -301,15 +300,21 @@ void put_frames(const Views& views, const Cuts& cuts, std::size_t l, const Movin
     } else if (high_x < 0) {
         return;
     }
+    if (!(first <= last)) return;
     const float width = high_x - low_x;
     const float slope = width > 0 ? (cuts.high_z[l] - cuts.low_z[l]) / width : 0.0F;
-    const float low = std::min(cuts.low_z[l], cuts.high_z[l]), high = std::max(cuts.low_z[l], cuts.high_z[l]);
-    for (float k = first; k <= last; ++k) {
-        // A cut that is all but a point has no trustworthy slope; its depth still lies between its ends.
-        const float on_face = std::clamp(cuts.low_z[l] + slope * (-k * step_x - low_x), low, high);
-        buffer.put(l, faces.frames.first + static_cast<int>(k), on_face + k * views.step_along(l),
-                   {faces.body_index, triangle});
-    }
+    const float along = views.step_along(l);
+    FaceRun run;
+    run.face = faces.first_face + triangle;
+    run.first = faces.frames.first + static_cast<int>(first);
+    run.last = faces.frames.first + static_cast<int>(last);
+    // A cut that is all but a point has no trustworthy slope; its depth still lies between its ends.
+    run.low_m = std::min(cuts.low_z[l], cuts.high_z[l]) + first * along;
+    run.high_m = std::max(cuts.low_z[l], cuts.high_z[l]) + first * along;
+    run.depth_m = cuts.low_z[l] + slope * (-first * step_x - low_x) + first * along;
+    run.step_m = -slope * step_x;
+    run.along_m = along;
+    buffer.put(l, run);
 }
 
 template <class Views>

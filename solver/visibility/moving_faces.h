@@ -10,10 +10,10 @@ namespace afterglow {
 struct MovingFaces {
     const Body& body;
     const TriangleTree& tree;
-    Index body_index = 0;
-    Pose first;        ///< in its first frame
-    Vec3 step_m{0};    ///< from frame to frame
-    FrameSpan frames;  ///< as the time buffer counts them
+    Index first_face = 0;  ///< number of its first triangle among those of all bodies
+    Pose first;            ///< in its first frame
+    Vec3 step_m{0};        ///< from frame to frame
+    FrameSpan frames;      ///< as the time buffer counts them
 };
 
 /// Puts every face of the body that a ray meets into the buffer, for all its frames at once. Exact up to

@@ -20,6 +20,12 @@ SweptActors::SweptActors(const World& world, const ActorTrees& trees, const Fram
       frames_(frames),
       poses_(world.bodies.size()),
       steady_after_(world.bodies.size()) {
+    Index faces = 0;
+    for (const Body& body : world.bodies) {
+        first_face_.push_back(faces);
+        // The furniture's faces are never met.
+        if (first_face_.size() > 1) faces += static_cast<Index>(body.triangles.size());
+    }
     for (Index b = 1; b < world.bodies.size(); ++b) {
         const Path& path = world.bodies[b].path;
         for (int f = frames.first; f <= frames.last; ++f) poses_[b].push_back(path.at(clock.time_of(f)));
@@ -92,14 +98,20 @@ void SweptActors::trace_turning(const Sweep& sweep, std::size_t ball, const RayP
                        rays, buffer);
 }
 
+SweptActors::Face SweptActors::face(Index number) const {
+    const auto next = std::upper_bound(first_face_.begin() + 1, first_face_.end(), number);
+    const auto body = static_cast<Index>(next - first_face_.begin() - 1);
+    return {body, number - first_face_[body]};
+}
+
 void SweptActors::trace(const RayPacket& rays, TimeBuffer& buffer) const {
     for (const Sweep& sweep : sweeps_) {
         if (sweep.part.motion == Motion::turning) {
             if (!sweep.balls.empty()) trace_turning(sweep, 1, rays, buffer);
             continue;
         }
-        trace_moving_faces({world_->bodies[sweep.body], (*trees_)[sweep.body], sweep.body, sweep.part.first,
-                            sweep.part.step_m, sweep.part.frames},
+        trace_moving_faces({world_->bodies[sweep.body], (*trees_)[sweep.body], first_face_[sweep.body],
+                            sweep.part.first, sweep.part.step_m, sweep.part.frames},
                            rays, buffer);
     }
 }

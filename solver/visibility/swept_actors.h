@@ -36,6 +36,12 @@ class SweptActors {
         return steady_after_[body][static_cast<std::size_t>(frame)] != 0;
     }
 
+    /// A face, as time buffers number them.
+    struct Face {
+        Index body, triangle;
+    };
+    [[nodiscard]] Face face(Index number) const;
+
     /// Puts every face that a ray meets before its `far` into the buffer, which has been cleared for these
     /// rays and has as many frames.
     void trace(const RayPacket& rays, TimeBuffer& buffer) const;
@@ -57,6 +63,7 @@ class SweptActors {
     const World* world_;
     const ActorTrees* trees_;
     FrameSpan frames_;
+    std::vector<Index> first_face_;                ///< by body: the number of its first triangle
     std::vector<std::vector<Pose>> poses_;         ///< [body][frame]; empty for the furniture
     std::vector<std::vector<char>> steady_after_;  ///< [body][frame]; empty for the furniture
     std::vector<Sweep> sweeps_;

@@ -2,32 +2,33 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "solver/visibility/ray_caster.h"
 
 namespace afterglow {
 
-/// The actor faces that sixteen fixed rays meet over some consecutive frames: for each ray a depth buffer
-/// whose pixels are the frames. Faces are put in one by one, in any order; the nearest stays. Frames count
-/// from 0 here. Source: DESIGN of the exact intervals as lower envelopes in the plane of time and distance,
-/// sampled where frames are.
+/// How far off a face is while a ray meets it: `depth_m` in frame `first`, and further by `step_m` from frame
+/// to frame, but always between `low_m` and `high_m` plus `along_m` for each frame since `first`.
+struct FaceRun {
+    Index face = 0;  ///< numbered as the user of the buffer likes
+    int first = 0, last = 0;
+    float depth_m = 0, step_m = 0;
+    float low_m = 0, high_m = 0;
+    float along_m = 0;
+};
+
+/// The faces that sixteen fixed rays meet over some consecutive frames: for each ray a depth buffer whose
+/// pixels are the frames. Faces are put in one by one, in any order; the nearest stays, and of two at the
+/// same depth the one of the lower number. This is the lower envelope of the faces' cuts in the plane of time
+/// and distance, taken where frames are. Frames count from 0.
 class TimeBuffer {
   public:
-    /// A face: which actor, which triangle.
-    struct Face {
-        Index body = no_index;
-        Index triangle = no_index;
-        bool operator==(const Face&) const = default;
-    };
-
     /// `frames` 1 or more.
-    explicit TimeBuffer(int frames) : frames_(frames), depth_m_(16 * size(frames)), face_(16 * size(frames)) {
+    explicit TimeBuffer(int frames)
+        : frames_(static_cast<std::size_t>(frames)), depth_m_(16 * frames_), face_(16 * frames_) {
         clear({});
     }
-
-    [[nodiscard]] int frames() const { return frames_; }
 
     /// Empties the buffer; what lies at `rays.far` or beyond is not seen.
     void clear(const RayPacket& rays) {
@@ -36,62 +37,65 @@ class TimeBuffer {
         far_m_ = rays.far;
     }
 
-    /// Puts in a face that a lane meets at `depth_m` in one frame.
-    void put(std::size_t lane, int frame, float depth_m, const Face& face) {
-        if (!(depth_m > 0) || !(depth_m < far_m_[lane])) return;
-        open(lane, frame);
-        const std::size_t at = index(lane, frame);
-        // Of two faces at one depth the earlier numbered stays, whatever the order they come in.
-        const bool nearer = depth_m < depth_m_[at] || (depth_m == depth_m_[at] && before(face, face_[at]));
-        if (!nearer) return;
-        depth_m_[at] = depth_m;
-        face_[at] = face;
+    /// Puts in a face that a lane meets; frames in which it is not before the ray's end count for nothing.
+    void put(std::size_t lane, const FaceRun& run) {
+        if (run.last < run.first) return;
+        open(lane, run.first, run.last);
+        float* const depth = &depth_m_[index(lane, run.first)];
+        Index* const face = &face_[index(lane, run.first)];
+        const int count = run.last - run.first + 1;
+        for (int k = 0; k < count; ++k) {
+            const auto steps = static_cast<float>(k);
+            const float on_face = std::min(std::max(run.depth_m + steps * run.step_m, run.low_m), run.high_m);
+            const float at = on_face + steps * run.along_m;
+            // Without branches, so that it becomes vector code.
+            const bool nearer = (at > 0) & ((at < depth[k]) | ((at == depth[k]) & (run.face < face[k])));
+            depth[k] = nearer ? at : depth[k];
+            face[k] = nearer ? run.face : face[k];
+        }
     }
 
     /// The frames in which a lane may meet a face: first … last, none if last < first.
     [[nodiscard]] int first(std::size_t lane) const { return first_[lane]; }
     [[nodiscard]] int last(std::size_t lane) const { return last_[lane]; }
 
-    /// What a lane meets in a frame from first to last; body no_index where nothing.
-    [[nodiscard]] const Face& face(std::size_t lane, int frame) const { return face_[index(lane, frame)]; }
+    /// What a lane meets in a frame from first to last; no_index where nothing.
+    [[nodiscard]] Index face(std::size_t lane, int frame) const { return face_[index(lane, frame)]; }
     [[nodiscard]] float depth_m(std::size_t lane, int frame) const { return depth_m_[index(lane, frame)]; }
 
   private:
-    static std::size_t size(int frames) { return static_cast<std::size_t>(frames); }
-    static bool before(const Face& a, const Face& b) {
-        return a.body != b.body ? a.body < b.body : a.triangle < b.triangle;
-    }
     [[nodiscard]] std::size_t index(std::size_t lane, int frame) const {
-        return lane * size(frames_) + size(frame);
+        return lane * frames_ + static_cast<std::size_t>(frame);
     }
 
-    /// Makes sure that a frame lies between first and last; frames that come in between are emptied.
-    void open(std::size_t lane, int frame) {
+    /// Makes sure that a run lies between first and last; frames that come in between are emptied.
+    void open(std::size_t lane, int first, int last) {
         if (last_[lane] < first_[lane]) {
-            empty(lane, frame, frame);
-            first_[lane] = last_[lane] = frame;
+            empty(lane, first, last);
+            first_[lane] = first;
+            last_[lane] = last;
+            return;
         }
-        if (frame < first_[lane]) {
-            empty(lane, frame, first_[lane] - 1);
-            first_[lane] = frame;
+        if (first < first_[lane]) {
+            empty(lane, first, first_[lane] - 1);
+            first_[lane] = first;
         }
-        if (frame > last_[lane]) {
-            empty(lane, last_[lane] + 1, frame);
-            last_[lane] = frame;
+        if (last > last_[lane]) {
+            empty(lane, last_[lane] + 1, last);
+            last_[lane] = last;
         }
     }
     void empty(std::size_t lane, int first, int last) {
-        for (int frame = first; frame <= last; ++frame) {
-            depth_m_[index(lane, frame)] = far_m_[lane];
-            face_[index(lane, frame)] = {};
-        }
+        const auto begin = static_cast<std::ptrdiff_t>(index(lane, first));
+        std::fill_n(depth_m_.begin() + begin, last - first + 1, far_m_[lane]);
+        std::fill_n(face_.begin() + begin, last - first + 1, no_index);
     }
 
-    int frames_;
+    std::size_t frames_;
     std::array<int, 16> first_{}, last_{};
     std::array<float, 16> far_m_{};
     std::vector<float> depth_m_;
-    std::vector<Face> face_;
+    std::vector<Index> face_;
 };
 
 }  // namespace afterglow

@@ -31,12 +31,14 @@ RayPacket random_packet(std::mt19937& random, float spread, Index count) {
     return rays;
 }
 
-void compare_frame(const RayCaster& caster, const RayPacket& rays, const TimeBuffer& buffer, int f,
-                   Differences& out) {
+void compare_frame(const RayCaster& caster, const SweptActors& swept, const RayPacket& rays,
+                   const TimeBuffer& buffer, int f, Differences& out) {
     for (std::size_t l = 0; l < rays.count; ++l) {
         const Hit hit = caster.nearest(rays.ray(l), Scope::actors);
         const bool open = buffer.first(l) <= f && f <= buffer.last(l);
-        const TimeBuffer::Face face = open ? buffer.face(l, f) : TimeBuffer::Face{};
+        const Index number = open ? buffer.face(l, f) : no_index;
+        const SweptActors::Face face =
+            number == no_index ? SweptActors::Face{no_index, no_index} : swept.face(number);
         ++out.line_frames;
         out.met += hit.body != no_index ? 1U : 0U;
         if (face.body == hit.body && face.triangle == hit.triangle) continue;
@@ -64,7 +66,8 @@ Differences compare(const World& world, const FrameClock& clock, const FrameSpan
     Differences out;
     for (int f = 0; f < frames.count(); ++f) {
         caster.set_poses(poses_at(world, clock.time_of(frames.first + f)));
-        for (std::size_t p = 0; p < rays.size(); ++p) compare_frame(caster, rays[p], buffers[p], f, out);
+        for (std::size_t p = 0; p < rays.size(); ++p)
+            compare_frame(caster, swept, rays[p], buffers[p], f, out);
     }
     return out;
 }
@@ -122,7 +125,7 @@ std::vector<float> depths_along_z(const World& world, int frames, const Vec3& di
     swept.trace(rays, buffer);
     std::vector<float> depths;
     for (int f = 0; f < frames; ++f) {
-        const bool met = buffer.first(0) <= f && f <= buffer.last(0) && buffer.face(0, f).body != no_index;
+        const bool met = buffer.first(0) <= f && f <= buffer.last(0) && buffer.face(0, f) != no_index;
         depths.push_back(met ? buffer.depth_m(0, f) : 0);
     }
     return depths;
