@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "solver/visibility/motion.h"
 #include "solver/visibility/static_pass.h"
 
 namespace afterglow {
@@ -21,6 +22,7 @@ struct LineScene {
     const LightLines& light;
     const RayCaster& caster;
     const StaticLines& background;  ///< traced as far as asked for; used by strategies that say they need it
+    int frame = 0;                  ///< which frame the poses stand for
 };
 
 /// How a frame learns what its lines see. All strategies give the same answers; they differ in work.
@@ -42,5 +44,10 @@ std::unique_ptr<VisibilityStrategy> make_retrace();
 /// Static receivers keep their backgrounds and are traced against the actors only (Baum et al. 1986); actors'
 /// own lines are traced anew.
 std::unique_ptr<VisibilityStrategy> make_back_buffer();
+
+/// Static lines keep their backgrounds; groups of patches keep a temporal graph of the actors between them
+/// and follow it front to back, see temporal_graph_strategy.h; actors' own lines are traced anew. `clock`
+/// tells what LineScene::frame means. Source: Tost and Pueyo 1993, section 3.
+std::unique_ptr<VisibilityStrategy> make_temporal_graph(const World& world, const FrameClock& clock);
 
 }  // namespace afterglow
