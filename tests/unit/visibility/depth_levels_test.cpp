@@ -43,19 +43,19 @@ DepthLevels levels_by_definition(const Successors& graph) {
 }
 
 TEST(DepthLevels, OfAChainAreItsPlaces) {
-    EXPECT_THAT(sort_by_levels({{1}, {2}, {}}).level, ElementsAre(0, 1, 2));
+    EXPECT_THAT(sort_by_levels({{1}, {2}, {}}).level, ElementsAre(0U, 1U, 2U));
 }
 
 TEST(DepthLevels, AreTheLongestPaths) {
     // 0 → 3 directly and over 1 and 2.
-    EXPECT_THAT(sort_by_levels({{1, 3}, {2}, {3}, {}}).level, ElementsAre(0, 1, 2, 3));
+    EXPECT_THAT(sort_by_levels({{1, 3}, {2}, {3}, {}}).level, ElementsAre(0U, 1U, 2U, 3U));
 }
 
 TEST(DepthLevels, CirclesAreOneNode) {
     const DepthLevels levels = sort_by_levels({{1}, {2}, {0, 3}, {}, {0}});
-    EXPECT_THAT(levels.component, ElementsAre(0, 0, 0, 3, 4));
-    EXPECT_THAT(levels.level, ElementsAre(1, 1, 1, 2, 0));
-    EXPECT_THAT(front_to_back(levels), ElementsAre(4, 0, 1, 2, 3));
+    EXPECT_THAT(levels.component, ElementsAre(0U, 0U, 0U, 3U, 4U));
+    EXPECT_THAT(levels.level, ElementsAre(1U, 1U, 1U, 2U, 0U));
+    EXPECT_THAT(front_to_back(levels), ElementsAre(4U, 0U, 1U, 2U, 3U));
 }
 
 TEST(DepthLevels, OfNothing) {

@@ -26,20 +26,20 @@ DepthLevels levels_at(const TemporalGraph& graph, double time_s) {
 
 TEST(TemporalGraph, FollowsIntervalsThatBeginAndEnd) {
     TemporalGraph graph = make_temporal_graph({{{1, {1, 3}}}, {{2, {-never, 2}}}, {}});
-    EXPECT_THAT(graph.levels.level, ElementsAre(0, 0, 1));
+    EXPECT_THAT(graph.levels.level, ElementsAre(0U, 0U, 1U));
     EXPECT_EQ(graph.until_s, 1);
     EXPECT_EQ(update(graph, 0.99).events, 0U);
     EXPECT_EQ(update(graph, 1).events, 1U);
-    EXPECT_THAT(graph.levels.level, ElementsAre(0, 1, 2));
+    EXPECT_THAT(graph.levels.level, ElementsAre(0U, 1U, 2U));
     EXPECT_EQ(update(graph, 2).events, 1U);
-    EXPECT_THAT(graph.levels.level, ElementsAre(0, 1, 0));
+    EXPECT_THAT(graph.levels.level, ElementsAre(0U, 1U, 0U));
     EXPECT_EQ(update(graph, 3).events, 1U);
     EXPECT_EQ(graph.until_s, never);
     EXPECT_EQ(update(graph, 0).events, 3U);
-    EXPECT_THAT(graph.levels.level, ElementsAre(0, 0, 1));
+    EXPECT_THAT(graph.levels.level, ElementsAre(0U, 0U, 1U));
     // All that is over before the next look leaves no trace.
     EXPECT_EQ(update(graph, 10).events, 3U);
-    EXPECT_THAT(graph.levels.level, ElementsAre(0, 0, 0));
+    EXPECT_THAT(graph.levels.level, ElementsAre(0U, 0U, 0U));
 }
 
 TEST(TemporalGraph, EqualsSortingFromScratchAfterEveryUpdate) {
@@ -131,10 +131,10 @@ TEST(TemporalGraph, ItsOrderIsTheOrderAlongEveryRay) {
 TEST(TemporalGraph, InterlockedRingsAndOverlappingBarsAreCircles) {
     SeenActors rings(testing::interlocked_rings(), Vec3(2, 1.5F, 0.2F));
     update(rings.graph, 0.5);
-    EXPECT_THAT(rings.graph.levels.component, ElementsAre(0, 0));
+    EXPECT_THAT(rings.graph.levels.component, ElementsAre(0U, 0U));
     SeenActors bars(testing::overlapping_bars(), Vec3(2, 2.9F, 2.5F));
     update(bars.graph, 0.5);
-    EXPECT_THAT(bars.graph.levels.component, ElementsAre(0, 0, 0));
+    EXPECT_THAT(bars.graph.levels.component, ElementsAre(0U, 0U, 0U));
 }
 
 }  // namespace
