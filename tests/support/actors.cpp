@@ -38,11 +38,24 @@ void add_tetrahedron(Body& body, const Vec3& centre, float size, Index material)
 }
 
 void add_ring(Body& body, const Vec3& centre, float radius, float thickness, Index material) {
-    const float r = radius, t = thickness, h = 0.5F * thickness;
-    add_box(body, centre + Vec3(-r, -r, -h), centre + Vec3(r, -r + t, h), material);
-    add_box(body, centre + Vec3(-r, r - t, -h), centre + Vec3(r, r, h), material);
-    add_box(body, centre + Vec3(-r, -r, -h), centre + Vec3(-r + t, r, h), material);
-    add_box(body, centre + Vec3(r - t, -r, -h), centre + Vec3(r, r, h), material);
+    const float h = 0.5F * thickness;
+    const auto corner = [&](int k, float half_edge, float z) {
+        return centre + Vec3((k & 3) == 0 || (k & 3) == 3 ? half_edge : -half_edge,
+                             (k & 3) < 2 ? half_edge : -half_edge, z);
+    };
+    const auto quad = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+        add_triangle(body, a, b, c, material);
+        add_triangle(body, a, c, d, material);
+    };
+    const float inner = radius - thickness;
+    for (int k = 0; k < 4; ++k) {
+        quad(corner(k, inner, h), corner(k, radius, h), corner(k + 1, radius, h), corner(k + 1, inner, h));
+        quad(corner(k, radius, -h), corner(k, inner, -h), corner(k + 1, inner, -h),
+             corner(k + 1, radius, -h));
+        quad(corner(k, radius, h), corner(k, radius, -h), corner(k + 1, radius, -h),
+             corner(k + 1, radius, h));
+        quad(corner(k, inner, -h), corner(k, inner, h), corner(k + 1, inner, h), corner(k + 1, inner, -h));
+    }
 }
 
 World random_world(unsigned seed, int actors, Movements movements) {

@@ -9,8 +9,7 @@ namespace afterglow::testing {
 /// Adds a tetrahedron around a centre.
 void add_tetrahedron(Body& body, const Vec3& centre, float size, Index material);
 
-/// Adds a square ring of four bars around the local z axis: outer half edge `radius`, bars `thickness` wide
-/// and deep. Neighbouring bars overlap in the corners, and their ends lie in common planes.
+/// Adds a square ring around the local z axis: outer half edge `radius`, its bars `thickness` wide and deep.
 void add_ring(Body& body, const Vec3& centre, float radius, float thickness, Index material);
 
 /// What the actors of a random world do.

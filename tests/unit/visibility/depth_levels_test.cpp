@@ -10,6 +10,11 @@ namespace {
 
 using ::testing::ElementsAre;
 
+/// A number below n.
+Index below(Index n, std::mt19937& random) {
+    return std::uniform_int_distribution<Index>(0, n - 1)(random);
+}
+
 /// Reachability by trying all intermediate nodes, Warshall.
 std::vector<std::vector<char>> reachable(const Successors& graph) {
     const std::size_t n = graph.size();
@@ -76,13 +81,13 @@ TEST(DepthLevels, StayRightWhileEdgesComeAndGo) {
     std::mt19937 random(7);
     std::size_t with_circles = 0;
     for (int round = 0; round < 60; ++round) {
-        const Index n = 2 + random() % 11;
+        const Index n = 2 + below(11, random);
         Successors graph(n);
         DepthLevels levels = sort_by_levels(graph);
         for (int step = 0; step < 40; ++step) {
             std::vector<Index> heads;
-            for (unsigned changes = 1 + random() % 3; changes > 0; --changes) {
-                const Index from = random() % n, to = random() % n;
+            for (Index changes = 1 + below(3, random); changes > 0; --changes) {
+                const Index from = below(n, random), to = below(n, random);
                 if (from == to) continue;
                 auto& successors = graph[from];
                 const auto at = std::lower_bound(successors.begin(), successors.end(), to);

@@ -63,8 +63,9 @@ TEST(SteadyViews, BoundTheSpeed) {
                 const double t = from + share(random) * (view.end_s - from - step);
                 const Vec3d moved = view.place(Vec3d(0.5), t + step) - view.place(Vec3d(0.5), t);
                 EXPECT_LE(glm::length(moved) / step, bound * (1 + 1e-6) + 1e-6);
-                if (view.body.motion != Motion::turning)
+                if (view.body.motion != Motion::turning) {
                     EXPECT_LT(glm::length(moved / step - view.velocity()), 1e-6);
+                }
             }
         }
     }

@@ -82,11 +82,11 @@ TEST(MayHide, IsExactForBoxes) {
     Random random{std::mt19937(5)};
     const Box around = box_of(Vec3(-1), Vec3(1));
     int hidden = 0, free = 0, missed = 0;
-    for (int round = 0; round < 400; ++round) {
+    for (int round = 0; round < 1500; ++round) {
         const Box blocker = random.box(around, 0.8F), target = random.box(around, 0.8F),
                   from = random.box(around, 0.3F);
         bool met = false;
-        for (int k = 0; k < 3000 && !met; ++k) {
+        for (int k = 0; k < 5000 && !met; ++k) {
             const Vec3 a = random.in(from), b = random.in(target);
             met = holds(blocker, a + random.unit(random.engine) * (b - a));
         }
@@ -99,7 +99,7 @@ TEST(MayHide, IsExactForBoxes) {
     EXPECT_GT(hidden, 50);
     EXPECT_GT(free, 50);
     // Exact: few that may hide are not found by luck.
-    EXPECT_LT(missed, hidden / 4);
+    EXPECT_LT(missed, hidden / 3);
 }
 
 TEST(MayHide, TellsNearFromFarAndSideBySide) {

@@ -14,6 +14,11 @@ using ::testing::ElementsAre;
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
+/// A number below n.
+Index below(Index n, std::mt19937& random) {
+    return std::uniform_int_distribution<Index>(0, n - 1)(random);
+}
+
 /// The levels at a time, from scratch.
 DepthLevels levels_at(const TemporalGraph& graph, double time_s) {
     Successors active(graph.adjacency.size());
@@ -47,7 +52,7 @@ TEST(TemporalGraph, EqualsSortingFromScratchAfterEveryUpdate) {
     std::uniform_real_distribution<double> unit(0, 1);
     std::uint64_t sorted = 0, nodes = 0;
     for (int round = 0; round < 60; ++round) {
-        const Index n = 2 + random() % 11;
+        const Index n = 2 + below(11, random);
         std::vector<std::vector<Adjacency>> adjacency(n);
         for (Index from = 0; from < n; ++from)
             for (Index to = 0; to < n; ++to) {
@@ -105,7 +110,7 @@ TEST(TemporalGraph, ItsOrderIsTheOrderAlongEveryRay) {
             const std::vector<Pose> poses = poses_at(seen.world, time);
             for (int k = 0; k < 60; ++k) {
                 // At some actor, then on to whatever stands behind.
-                const Index target = 1 + random() % (static_cast<Index>(seen.world.bodies.size()) - 1);
+                const Index target = 1 + below(static_cast<Index>(seen.world.bodies.size()) - 1, random);
                 const Vec3 jitter(unit(random) - 0.5F, unit(random) - 0.5F, unit(random) - 0.5F);
                 Ray ray{eye, glm::normalize(poses[target].translation + 0.4F * jitter - eye)};
                 Index before = no_index;
