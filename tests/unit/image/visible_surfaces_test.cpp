@@ -82,7 +82,7 @@ TEST_P(VisibleSurfacesFor, TheObserverAreWhatRaysMeet) {
         }
     }
     // Pixels whose centres lie on an edge are ties.
-    EXPECT_LE(different, pixels / 1000);
+    EXPECT_LE(different, pixels / 10000);
     EXPECT_LT(front_to_back, back_to_front);
     EXPECT_GE(front_to_back, static_cast<std::uint64_t>(pixels) * 9 / 10);
     RecordProperty("different", different);
