@@ -73,20 +73,34 @@ class Walk {
         lanes &= lanes_through(lines_, node.box);
         if (lanes == 0) return 0;
         const PlaneSide side = temporal_.nodes[index].side;
-        if (side == PlaneSide::across) return unordered(node.first_face, node.subtree_faces, lanes);
+        if (side == PlaneSide::across) return visit_unordered(index, lanes);
         const Index near = side == PlaneSide::front ? node.front : node.back;
         const Index far = side == PlaneSide::front ? node.back : node.front;
         std::uint32_t found = near == no_index ? 0 : visit(near, lanes);
-        found |= unordered(node.first_face, node.own_faces, lanes & ~found);
+        found |= own(node, lanes & ~found);
         if (far != no_index && (lanes & ~found) != 0) found |= visit(far, lanes & ~found);
         return found;
     }
 
   private:
-    [[nodiscard]] std::uint32_t unordered(Index first, Index count, std::uint32_t lanes) const {
+    /// The lines begin on both sides of the plane: all that they may meet is tested, the nearest counts.
+    [[nodiscard]] std::uint32_t visit_unordered(Index index, std::uint32_t lanes) const {
+        const BspTree::Node& node = tree_.nodes[index];
+        std::uint32_t found = own(node, lanes);
+        for (const Index child : {node.front, node.back}) {
+            if (child == no_index) continue;
+            ++work_.node_visits;
+            const std::uint32_t within = lanes & lanes_through(lines_, tree_.nodes[child].box);
+            if (within != 0) found |= visit_unordered(child, within);
+        }
+        return found;
+    }
+
+    [[nodiscard]] std::uint32_t own(const BspTree::Node& node, std::uint32_t lanes) const {
         std::uint32_t found = 0;
         if (lanes == 0) return found;
-        for (Index k = first; k < first + count; ++k) found |= test_.face(k, lanes);
+        for (Index k = node.first_face; k < node.first_face + node.own_faces; ++k)
+            found |= test_.face(k, lanes);
         return found;
     }
 

@@ -48,7 +48,8 @@ std::uint32_t search_in_order(const SearchedBody& body, const TemporalBsp& tempo
                               std::uint32_t lanes, LaneHits& hits, SearchWork& work);
 
 /// Surface level by walking the tree: near side, own faces, far side, as the stored signs say, leaving out
-/// subtrees whose boxes no line meets.
+/// subtrees whose boxes no line meets. Below a plane that the viewpoint's ball reaches across, the nearest
+/// hit counts.
 std::uint32_t search_tree(const SearchedBody& body, const TemporalBsp& temporal, const LinePacket& lines,
                           std::uint32_t lanes, LaneHits& hits, SearchWork& work);
 

@@ -98,6 +98,7 @@ void TemporalGraphWork::add(const TemporalGraphWork& other) {
     nodes_sorted += other.nodes_sorted;
     tree_visits += other.tree_visits;
     side_changes += other.side_changes;
+    packets += other.packets;
     lines_searched += other.lines_searched;
     search.line_face_tests += other.search.line_face_tests;
     search.node_visits += other.search.node_visits;

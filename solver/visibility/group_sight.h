@@ -55,6 +55,7 @@ struct TemporalGraphWork {
     std::uint64_t nodes_sorted = 0;    ///< objects sorted anew by level
     std::uint64_t tree_visits = 0;     ///< nodes of temporal BSP trees whose change had come
     std::uint64_t side_changes = 0;    ///< nodes whose sign changed
+    std::uint64_t packets = 0;         ///< packets of lines made, since some actor may come between
     std::uint64_t lines_searched = 0;  ///< lines followed through their graph
     SearchWork search;
 

@@ -141,6 +141,7 @@ std::uint32_t TemporalGraphStrategy::follow_packet(const Frame& frame, std::size
                                                    std::uint32_t lanes, LaneHits& hits,
                                                    TemporalGraphWork& work) const {
     const PacketQuery query{lines, actors, frame.placed_boxes, frame.poses, config_.search};
+    ++work.packets;
     // Most packets with an encounter in this slice of time miss every box at this moment.
     std::uint32_t near = 0;
     for (const Encounter& encounter : actors)

@@ -61,11 +61,23 @@ void back_buffer(benchmark::State& state) {
     run_frames(state, *make_back_buffer());
 }
 
+/// What every strategy but `retrace` spends on the actors' own lines.
+void own_lines(benchmark::State& state) {
+    Room& r = room();
+    const LineRange own{r.sight.static_blocks(), r.sight.blocks().size(), 0, lines_a_patch};
+    const Context context(1);
+    for (auto _ : state)
+        trace_lines(r.sight, r.mesh, r.caster, Scope::everything, own, {r.visible.patch, {}}, context);
+    state.counters["patches"] = r.mesh.size();
+    state.counters["own_patches"] = r.mesh.size() - r.mesh.static_size();
+}
+
 void temporal_graph(benchmark::State& state) {
     Room& r = room();
     TemporalGraphStrategy strategy(r.world, r.clock,
                                    {.grouping = static_cast<Grouping>(state.range(0)),
-                                    .search = static_cast<FaceSearch>(state.range(1))});
+                                    .search = static_cast<FaceSearch>(state.range(1)),
+                                    .frames_per_slice = static_cast<double>(state.range(2))});
     const auto before = std::chrono::steady_clock::now();
     r.look(strategy, 0, Context(1));
     const std::chrono::duration<double, std::milli> learning = std::chrono::steady_clock::now() - before;
@@ -89,6 +101,7 @@ void temporal_graph(benchmark::State& state) {
     state.counters["nodes_sorted"] = mean(sum.nodes_sorted);
     state.counters["tree_visits"] = mean(sum.tree_visits);
     state.counters["side_changes"] = mean(sum.side_changes);
+    state.counters["packets"] = mean(sum.packets);
     state.counters["lines"] = mean(sum.lines_searched);
     state.counters["tests"] = mean(sum.search.line_face_tests);
     state.counters["node_visits"] = mean(sum.search.node_visits);
@@ -96,9 +109,11 @@ void temporal_graph(benchmark::State& state) {
 
 BENCHMARK(retrace)->Iterations(4)->Unit(benchmark::kMillisecond);
 BENCHMARK(back_buffer)->Iterations(frames - 1)->Unit(benchmark::kMillisecond);
+BENCHMARK(own_lines)->Iterations(20)->Unit(benchmark::kMillisecond);
 BENCHMARK(temporal_graph)
-    ->ArgNames({"grouping", "search"})
-    ->ArgsProduct({{0, 1, 2, 3}, {0, 1, 2}})
+    ->ArgNames({"grouping", "search", "slice"})
+    ->ArgsProduct({{0, 1, 2, 3}, {0, 1, 2}, {4}})
+    ->ArgsProduct({{1, 2}, {2}, {1, 2, 8}})
     ->Iterations(frames - 1)
     ->Unit(benchmark::kMillisecond);
 

@@ -183,6 +183,37 @@ TEST(TemporalGraphStrategy, AnActorAtRestNeedsNoUpdates) {
     EXPECT_GT(strategy.work().search.line_face_tests, 0U);
 }
 
+TEST(TemporalGraphStrategy, CoincidentFacesAreTiesAndNothingElse) {
+    // Two boxes in one: their sides lie on each other, the second reaches farther along x.
+    World world = testing::small_room();
+    world.bodies.pop_back();
+    Path path;
+    path.keys = {{0, {Vec3(1, 1, 3), Quat(1, 0, 0, 0)}}, {2, {Vec3(3, 1.5F, 2), Quat(1, 0, 0, 0)}}};
+    const Index actor = testing::add_actor(world, "double", Vec3(0.4F), 0, path);
+    testing::add_box(world.bodies[actor], Vec3(-0.1F, -0.4F, -0.4F), Vec3(0.7F, 0.4F, 0.4F), 1);
+    for (const FaceSearch search : {FaceSearch::all, FaceSearch::order, FaceSearch::tree}) {
+        Contest c(world);
+        TemporalGraphStrategy strategy(c.lined.world, clock_of_tests, {.search = search});
+        const PatchMesh& mesh = c.lined.mesh;
+        std::size_t ties = 0, others = 0;
+        for (const int frame : {0, 5, 11, 24}) {
+            const VisibleLines expected = c.look(*c.retrace, frame), seen = c.look(strategy, frame);
+            for (std::size_t k = 0; k < seen.patch.size(); ++k) {
+                const Index a = seen.patch[k], b = expected.patch[k];
+                if (a == b) continue;
+                const bool one_plane =
+                    a < mesh.size() && b < mesh.size() && mesh.body[a] == actor && mesh.body[b] == actor &&
+                    std::abs(glm::dot(mesh.normal[a], mesh.normal[b])) > 0.9999F &&
+                    std::abs(glm::dot(mesh.normal[a], mesh.centre[a] - mesh.centre[b])) < 1e-5F;
+                (one_plane ? ties : others) += 1;
+            }
+            EXPECT_EQ(seen.light_contribution, expected.light_contribution);
+        }
+        EXPECT_EQ(others, 0U);
+        EXPECT_GT(ties, 0U) << "the world has no ties to tell from";
+    }
+}
+
 TEST(TemporalGraphStrategy, WorksWithoutActors) {
     World world = testing::small_room();
     world.bodies.pop_back();
