@@ -50,6 +50,10 @@ Vec3d SteadyView::velocity() const {
     return glm::conjugate(rotation_at(body, begin_s)) * (velocity_of(viewer) - velocity_of(body));
 }
 
+Vec3d SteadyView::in_world(const Vec3d& direction) const {
+    return rotation_at(body, begin_s) * direction;
+}
+
 double SteadyView::greatest_speed(const Vec3d& offset_m, double from_s) const {
     const double straight = glm::length(velocity_of(viewer) - velocity_of(body));
     const double rate = turning_rate(body);

@@ -19,6 +19,8 @@ struct SteadyView {
     [[nodiscard]] Vec3d place(const Vec3d& offset_m, double time_s) const;
     /// How fast that place moves, metres a second; only where the body does not turn (it is constant then).
     [[nodiscard]] Vec3d velocity() const;
+    /// A direction of the body's frame in world axes; only where the body does not turn.
+    [[nodiscard]] Vec3d in_world(const Vec3d& direction) const;
     /// No less than the speed of that place in the body's frame from `from_s` to the end of this view.
     [[nodiscard]] double greatest_speed(const Vec3d& offset_m, double from_s) const;
 };

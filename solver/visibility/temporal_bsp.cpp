@@ -18,7 +18,7 @@ class Visit {
         : temporal_(temporal),
           tree_(tree),
           view_(view),
-          radius_(viewpoint.radius_m),
+          viewpoint_(viewpoint),
           time_s_(time_s),
           place_(view.place(viewpoint.offset_m, time_s)),
           turns_(view.body.motion == Motion::turning),
@@ -96,34 +96,39 @@ class Visit {
 
     /// Finds the side of a plane and until when it holds.
     void look(TemporalBsp::Node& node, const Plane& plane) const {
-        const double above = plane.above(place_);
-        node.side = above >= radius_    ? PlaneSide::front
-                    : above <= -radius_ ? PlaneSide::back
-                                        : PlaneSide::across;
+        const double above = plane.above(place_), reach = reach_across(plane);
+        node.side = above >= reach ? PlaneSide::front : above <= -reach ? PlaneSide::back : PlaneSide::across;
         double until = never;
         if (turns_) {
-            const double room = std::abs(std::abs(above) - radius_);
+            const double room = std::abs(std::abs(above) - reach);
             // A plane just reached would be asked again and again at the same time; the clock moves on.
             if (greatest_speed_ > 0) until = time_s_ + room / greatest_speed_;
         } else if (const double speed = glm::dot(plane.normal, velocity_); speed != 0) {
-            until = time_s_ + (border_ahead(node.side, speed) - above) / speed;
+            until = time_s_ + (border_ahead(node.side, speed, reach) - above) / speed;
         }
         // A border left behind lies in the past.
         if (!turns_ && until < time_s_) until = never;
         node.change_s = std::min(until, view_.end_s);
     }
 
+    /// How far the viewpoint reaches to both sides along a plane's normal.
+    [[nodiscard]] double reach_across(const Plane& plane) const {
+        if (turns_) return viewpoint_.radius_m;
+        const Vec3d normal = glm::abs(view_.in_world(plane.normal));
+        return std::min(viewpoint_.radius_m, glm::dot(normal, viewpoint_.half_extent_m));
+    }
+
     /// The distance at which a viewpoint on a side, moving with a speed, comes to another side.
-    [[nodiscard]] double border_ahead(PlaneSide side, double speed) const {
-        if (side == PlaneSide::front) return radius_;
-        if (side == PlaneSide::back) return -radius_;
-        return speed > 0 ? radius_ : -radius_;
+    static double border_ahead(PlaneSide side, double speed, double reach) {
+        if (side == PlaneSide::front) return reach;
+        if (side == PlaneSide::back) return -reach;
+        return speed > 0 ? reach : -reach;
     }
 
     TemporalBsp& temporal_;
     const BspTree& tree_;
     const SteadyView& view_;
-    double radius_;
+    const Viewpoint& viewpoint_;
     double time_s_;
     Vec3d place_;
     bool turns_;

@@ -8,18 +8,20 @@
 
 namespace afterglow {
 
-/// Who looks: all points within a ball. A radius of 0 is a point; the ball around a block of patches holds
-/// the origins of all their lines.
+/// Who looks: all points that lie within both a ball and a box around one place. A radius of 0 is a point;
+/// the ball and the box around a block of patches hold the origins of all their lines.
 struct Viewpoint {
     Vec3d offset_m{0};  ///< from the viewer's origin, world axes; the place itself for a viewer without path
-    double radius_m = 0;  ///< 0 or more
+    double radius_m = 0;        ///< 0 or more
+    Vec3d half_extent_m{1e30};  ///< of the box, world axes; used where the body does not turn
 };
 
 /// On which side of a node's plane a viewpoint is.
 enum class PlaneSide : std::uint8_t {
     front,
     back,
-    across,  ///< the ball reaches across: the faces below the node have no common order for all its points
+    across,  ///< the viewpoint reaches across: the faces below the node have no common order for all its
+             ///< points
 };
 
 /// One face in the order of a viewpoint.

@@ -53,7 +53,8 @@ std::vector<ViewGroup> make_view_groups(const PatchMesh& mesh, const SightLines&
         }
     }
     for (ViewGroup& group : groups)
-        group.viewpoint = {Vec3d(group.origins.centre()), 0.5 * glm::length(Vec3d(group.origins.extent()))};
+        group.viewpoint = {Vec3d(group.origins.centre()), 0.5 * glm::length(Vec3d(group.origins.extent())),
+                           0.5 * Vec3d(group.origins.extent())};
     return groups;
 }
 

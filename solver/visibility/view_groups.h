@@ -20,7 +20,7 @@ struct ViewGroup {
     std::size_t first_block = 0, last_block = 0;  ///< [first, last)
     std::uint32_t lanes = 0xFFFF;                 ///< which patches of each block
     Box origins;                                  ///< holds the origins of all their lines
-    Viewpoint viewpoint;                          ///< so does this ball
+    Viewpoint viewpoint;                          ///< so do this ball and this box
 };
 
 /// The groups of all static blocks in the blocks' order. A block that holds patches of several surfaces

@@ -27,9 +27,6 @@ struct Scene {
         tree = make_bsp_tree(body);
         views = steady_views(body.path, viewer);
     }
-    [[nodiscard]] Vec3d place(double time_s) const {
-        return view_at(views, time_s).place(viewpoint.offset_m, time_s);
-    }
     [[nodiscard]] TemporalBsp at(double time_s) const {
         return make_temporal_bsp(tree, views, viewpoint, time_s);
     }
@@ -58,7 +55,8 @@ Scene random_scene(std::mt19937& random, int round, Turning turning) {
     if (round % 3 == 1) scene.viewer = testing::random_path(random, around, 3, Turning::yes);
     std::uniform_real_distribution<double> unit(-2, 2);
     scene.viewpoint.offset_m = Vec3d(unit(random), unit(random), unit(random));
-    if (round % 5 == 4) scene.viewpoint.radius_m = 0.2;
+    if (round % 5 >= 3) scene.viewpoint.radius_m = 0.2;
+    if (round % 5 == 3) scene.viewpoint.half_extent_m = Vec3d(0.15, 0.01, 0.1);
     scene.ready();
     return scene;
 }
@@ -111,7 +109,9 @@ TEST(TemporalBsp, OrdersFrontToBackForAllTimes) {
             for (int k = 0; k < 10; ++k) {
                 Vec3d off(normal(random), normal(random), normal(random));
                 off *= 0.999 * scene.viewpoint.radius_m * share(random) / glm::length(off);
-                const Vec3d origin = scene.place(time) + off;
+                // In world axes as the box is, then as the body sees it.
+                off = glm::clamp(off, -scene.viewpoint.half_extent_m, scene.viewpoint.half_extent_m);
+                const Vec3d origin = view_at(scene.views, time).place(scene.viewpoint.offset_m + off, time);
                 const Vec3d towards(0.5 * normal(random), 0.5 * normal(random), 0.5 * normal(random));
                 expect_front_to_back(scene, temporal, origin, glm::normalize(towards - origin));
             }
@@ -146,11 +146,15 @@ TEST(TemporalBsp, PredictsTheRootsOfTranslation) {
     int compared = 0;
     for (int round = 0; round < 60; ++round) {
         const Scene scene = random_scene(random, round, Turning::no);
-        const double radius = scene.viewpoint.radius_m;
+
         for (const double time : {-0.3, 0.0, 0.4, 1.0, 1.7, 2.0, 3.5}) {
             const TemporalBsp temporal = scene.at(time);
             const double end = view_at(scene.views, time).end_s;
             for (Index n = 0; n < scene.tree.nodes.size(); ++n) {
+                // These bodies never turn: their axes are the world's.
+                const double radius = std::min(
+                    scene.viewpoint.radius_m,
+                    glm::dot(glm::abs(scene.tree.nodes[n].plane.normal), scene.viewpoint.half_extent_m));
                 const auto side = [&](double t) {
                     const double above = scene.tree.nodes[n].plane.above(
                         view_at(scene.views, time).place(scene.viewpoint.offset_m, t));
@@ -237,6 +241,17 @@ TEST(TemporalBsp, ABallIsAcrossWhileAPlanePasses) {
                                       [](const auto& node) { return node.side == PlaneSide::across; });
     EXPECT_EQ(across, 1);
     EXPECT_DOUBLE_EQ(temporal.next_change_s(), 5.5);
+}
+
+TEST(TemporalBsp, AFlatBoxOfViewpointsIsAcrossOnlyForPlanesItReaches) {
+    Scene scene = coming_box(Vec3d(-4, 0, 3), 0.5);
+    scene.viewpoint.half_extent_m = Vec3d(0, 0.3, 0.3);
+    EXPECT_DOUBLE_EQ(scene.at(0).next_change_s(), 5);
+    scene.viewpoint.half_extent_m = Vec3d(0.2, 0.3, 0.3);
+    EXPECT_DOUBLE_EQ(scene.at(0).next_change_s(), 4.8);
+    // The ball still limits a box that is larger.
+    scene.viewpoint.half_extent_m = Vec3d(0.7, 0.3, 0.3);
+    EXPECT_DOUBLE_EQ(scene.at(0).next_change_s(), 4.5);
 }
 
 TEST(TemporalBsp, EventsExactlyOnAPlaneAndTwoAtOneTimeTerminate) {

@@ -29,6 +29,8 @@ TEST(ViewGroups, HoldEveryStaticPatchOnceAndTheOriginsOfItsLines) {
                         const Vec3 from = rays.ray(lane).origin;
                         ASSERT_TRUE(glm::all(glm::greaterThanEqual(from, group.origins.low)));
                         ASSERT_TRUE(glm::all(glm::lessThanEqual(from, group.origins.high)));
+                        const Vec3d off = glm::abs(Vec3d(from) - group.viewpoint.offset_m);
+                        ASSERT_TRUE(glm::all(glm::lessThanEqual(off, group.viewpoint.half_extent_m + 1e-6)));
                         ASSERT_LE(glm::length(Vec3d(from) - group.viewpoint.offset_m),
                                   group.viewpoint.radius_m + 1e-6);
                     }
