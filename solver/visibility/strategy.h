@@ -58,4 +58,9 @@ std::unique_ptr<VisibilityStrategy> make_retrace();
 /// own lines are traced anew.
 std::unique_ptr<VisibilityStrategy> make_back_buffer();
 
+/// Static lines keep their backgrounds; groups of patches keep a temporal graph of the actors between them
+/// and follow it front to back, see temporal_graph_strategy.h; actors' own lines are traced anew. `clock`
+/// tells what LineScene::frame means. Source: Tost and Pueyo 1993, section 3.
+std::unique_ptr<VisibilityStrategy> make_temporal_graph(const World& world, const FrameClock& clock);
+
 }  // namespace afterglow
