@@ -22,9 +22,10 @@ struct Named {
     std::string_view name;
     Value value;
 };
-constexpr std::array<Named<Visibility>, 3> visibilities{{
+constexpr std::array<Named<Visibility>, 4> visibilities{{
     {"retrace", Visibility::retrace},
     {"back-buffer", Visibility::back_buffer},
+    {"temporal-graph", Visibility::temporal_graph},
     {"events", Visibility::events},
 }};
 constexpr std::array<Named<Solution>, 1> solutions{{{"progressive", Solution::progressive}}};

@@ -11,9 +11,10 @@ namespace afterglow {
 
 /// How each frame learns which patch every sight line sees.
 enum class Visibility {
-    retrace,      ///< static and moving geometry traced anew: the yardstick
-    back_buffer,  ///< Baum et al. 1986: only the actors are traced, up to the static background
-    events,       ///< when each line comes to see something else is found ahead; a frame touches only those
+    retrace,         ///< static and moving geometry traced anew: the yardstick
+    back_buffer,     ///< Baum et al. 1986: only the actors are traced, up to the static background
+    temporal_graph,  ///< Tost and Pueyo 1993: actors in order of depth, kept from frame to frame
+    events,  ///< when each line comes to see something else is found ahead; a frame touches only those
 };
 
 /// How each frame's light is solved.

@@ -32,6 +32,8 @@ std::unique_ptr<VisibilityStrategy> make_strategy(const SequenceState::Parts& pa
             return make_retrace();
         case Visibility::back_buffer:
             return make_back_buffer();
+        case Visibility::temporal_graph:
+            return make_temporal_graph(parts.world, FrameClock{parts.frames_per_second()});
         case Visibility::events:
             return make_events(parts.world, FrameClock{parts.frames_per_second()});
     }

@@ -31,7 +31,8 @@ SequenceConfig quick() {
 Picture expect_clean(const World& bad, const SequenceConfig& settings = quick()) {
     const World world = testing::from_file(bad);
     Picture last;
-    for (const Visibility visibility : {Visibility::retrace, Visibility::back_buffer, Visibility::events}) {
+    for (const Visibility visibility :
+         {Visibility::retrace, Visibility::back_buffer, Visibility::temporal_graph, Visibility::events}) {
         SequenceConfig config = settings;
         config.visibility = visibility;
         for (const int frame : {0, 20}) {

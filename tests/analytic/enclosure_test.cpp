@@ -40,7 +40,8 @@ double power(const PatchMesh& mesh, std::span<const Rgb> values) {
 
 class EveryVisibility : public ::testing::TestWithParam<Visibility> {};
 INSTANTIATE_TEST_SUITE_P(Analytic, EveryVisibility,
-                         ::testing::Values(Visibility::retrace, Visibility::back_buffer, Visibility::events),
+                         ::testing::Values(Visibility::retrace, Visibility::back_buffer,
+                                           Visibility::temporal_graph, Visibility::events),
                          [](const auto& test) { return testing::test_name(test.param); });
 
 TEST_P(EveryVisibility, AFurnaceIsUniformWhateverTheActorsDo) {

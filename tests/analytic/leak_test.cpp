@@ -204,7 +204,8 @@ void expect_dark_paths(const DarkSide& scene) {
 }
 
 void expect_dark(const DarkSide& scene) {
-    for (const Visibility visibility : {Visibility::retrace, Visibility::back_buffer, Visibility::events}) {
+    for (const Visibility visibility :
+         {Visibility::retrace, Visibility::back_buffer, Visibility::temporal_graph, Visibility::events}) {
         expect_dark_patches(scene, visibility);
         expect_dark_pixels(scene, visibility);
     }

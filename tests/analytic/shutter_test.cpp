@@ -20,7 +20,8 @@ using testing::SolvedWorldConfig;
 
 class MovingOccluder : public ::testing::TestWithParam<Visibility> {};
 INSTANTIATE_TEST_SUITE_P(Analytic, MovingOccluder,
-                         ::testing::Values(Visibility::retrace, Visibility::back_buffer, Visibility::events),
+                         ::testing::Values(Visibility::retrace, Visibility::back_buffer,
+                                           Visibility::temporal_graph, Visibility::events),
                          [](const auto& test) { return testing::test_name(test.param); });
 
 /// A flat actor in the plane z, around the path's x, that is at `from` at time 0 and moves 1 m/s along x.

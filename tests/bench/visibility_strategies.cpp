@@ -131,11 +131,11 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
         "at %zu sampled frames: %llu changes by retracing, %llu by events; %llu of the lines differ\n",
         retrace.frame_ms.size(), static_cast<unsigned long long>(changes), static_cast<unsigned long long>(k),
         static_cast<unsigned long long>(different));
-    std::printf("%-12s %12s %12s %10s %14s\n", "strategy", "ahead, ms", "frame, ms", "ratio", "whole, ratio");
+    std::printf("%-14s %12s %12s %10s %14s\n", "strategy", "ahead, ms", "frame, ms", "ratio", "whole, ratio");
     for (const Row* row : {&retrace, &back_buffer, &events}) {
         const double frame_ms = median(row->frame_ms);
         const double fixed = row == &retrace ? 0 : static_ms + row->ahead_ms;
-        std::printf("%-12s %12.1f %12.3f %10.1f %14.1f\n", row->name, row->ahead_ms, frame_ms,
+        std::printf("%-14s %12.1f %12.3f %10.1f %14.1f\n", row->name, row->ahead_ms, frame_ms,
                     per_frame / frame_ms, per_frame * frames / (fixed + frame_ms * frames));
     }
     std::printf("events in all: %.2f M\n", static_cast<double>(events_applied) * 1e-6);
@@ -146,11 +146,13 @@ void compare_whole_frames(Room& room, const FrameClock& clock, int frames, const
     VisibleLines visible = make_visible_lines(room.mesh, room.sight, room.light);
     const auto events = make_events(room.world, clock, {window}), back_buffer = make_back_buffer(),
                retrace = make_retrace();
-    Row rows[3] = {{"retrace"}, {"back-buffer"}, {"events"}};
-    VisibilityStrategy* strategies[3] = {retrace.get(), back_buffer.get(), events.get()};
-    for (int s = 0; s < 3; ++s) {
+    const auto temporal_graph = make_temporal_graph(room.world, clock);
+    Row rows[4] = {{"retrace"}, {"back-buffer"}, {"temporal-graph"}, {"events"}};
+    VisibilityStrategy* strategies[4] = {retrace.get(), back_buffer.get(), temporal_graph.get(),
+                                         events.get()};
+    for (int s = 0; s < 4; ++s) {
         VisibleLines seen = visible;
-        for (int f = 0; f < frames; f += s == 2 ? 1 : std::max(1, frames / 24)) {
+        for (int f = 0; f < frames; f += s >= 2 ? 1 : std::max(1, frames / 24)) {
             room.caster.set_poses(poses_at(room.world, clock.time_of(f)));
             const LineScene scene{room.mesh, room.sight, room.light, room.caster, room.background, f};
             rows[s].frame_ms.push_back(ms_of([&] {
@@ -158,11 +160,11 @@ void compare_whole_frames(Room& room, const FrameClock& clock, int frames, const
             }));
         }
     }
-    for (const WorkAhead& work : events->work_ahead()) rows[2].ahead_ms += work.time.count();
+    for (const WorkAhead& work : events->work_ahead()) rows[3].ahead_ms += work.time.count();
     std::printf("\nwith light lines and actors' own lines (%.1f %% of the patches)\n",
                 100.0 - 100.0 * room.mesh.static_size() / room.mesh.size());
     for (const Row& row : rows)
-        std::printf("%-12s %12.1f %12.3f %10.1f\n", row.name, row.ahead_ms, median(row.frame_ms),
+        std::printf("%-14s %12.1f %12.3f %10.1f\n", row.name, row.ahead_ms, median(row.frame_ms),
                     median(rows[0].frame_ms) / median(row.frame_ms));
 }
 

@@ -27,6 +27,8 @@ std::unique_ptr<VisibilityStrategy> make_strategy(Visibility visibility, const W
             return make_retrace();
         case Visibility::back_buffer:
             return make_back_buffer();
+        case Visibility::temporal_graph:
+            return make_temporal_graph(world, fine_clock);
         case Visibility::events:
             return make_events(world, fine_clock, {1});
     }

@@ -282,10 +282,12 @@ TEST(Method, ABallInARoomSeesTheWholeRoom) {
 }
 
 TEST(Method, BuriedSamplesAreLeftOut) {
-    // A floor half of which lies under a solid block that reaches through it.
+    // A floor half of which lies within an actor that reaches through it; along furniture it would be cut.
     World world = testing::empty_world();
     add_quad(world.bodies[furniture], Vec3(0), Vec3(1, 0, 0), Vec3(0, 1, 0), 0);
-    add_box(world.bodies[furniture], Vec3(-.5F, -.5F, -.5F), Vec3(.5F, 1.5F, 1.5F), 0);
+    Path path;
+    path.keys = {{0, {Vec3(0, .5F, .5F), Quat(1, 0, 0, 0)}}};
+    add_actor(world, "block", Vec3(.5F, 1, 1), 0, path);
     const Placed scene(std::move(world), 4, 1024);
     const auto hemicube = make_hemicube({.hemicube = {.resolution = 64}, .points_per_edge = 4});
     for (const FormFactorRow& row :

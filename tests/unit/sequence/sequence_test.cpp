@@ -103,7 +103,8 @@ TEST(Sequence, SameBitsForAnyNumberOfThreads) {
 
 TEST(Sequence, HistoryDoesNotMatter) {
     const Context context(2);
-    for (const Visibility visibility : {Visibility::back_buffer, Visibility::events}) {
+    for (const Visibility visibility :
+         {Visibility::back_buffer, Visibility::temporal_graph, Visibility::events}) {
         SequenceConfig config = quick();
         config.visibility = visibility;
         SequenceState state = make_state(small_room(), config, context);
@@ -134,7 +135,8 @@ TEST(Sequence, EveryVisibilityGivesTheSamePicture) {
     SequenceConfig config = quick();
     config.visibility = Visibility::retrace;
     const Picture retraced = final_of(small_room(), config, 12);
-    for (const Visibility visibility : {Visibility::back_buffer, Visibility::events}) {
+    for (const Visibility visibility :
+         {Visibility::back_buffer, Visibility::temporal_graph, Visibility::events}) {
         config.visibility = visibility;
         const Picture kept = final_of(small_room(), config, 12);
         double difference = 0, sum = 0;
