@@ -91,7 +91,7 @@ void SweptActors::trace_turning(const Sweep& sweep, std::size_t ball, const RayP
     if (frame > sweep.part.frames.last) return;
     trace_moving_faces({world_->bodies[sweep.body],
                         (*trees_)[sweep.body],
-                        sweep.body,
+                        first_face_[sweep.body],
                         pose(sweep.body, frame),
                         Vec3(0),
                         {frame, frame}},

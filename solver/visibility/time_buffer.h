@@ -49,7 +49,8 @@ class TimeBuffer {
             const float on_face = std::min(std::max(run.depth_m + steps * run.step_m, run.low_m), run.high_m);
             const float at = on_face + steps * run.along_m;
             // Without branches, so that it becomes vector code.
-            const bool nearer = (at > 0) & ((at < depth[k]) | ((at == depth[k]) & (run.face < face[k])));
+            const bool same = (at == depth[k]) & (face[k] != no_index);
+            const bool nearer = (at > 0) & ((at < depth[k]) | (same & (run.face < face[k])));
             depth[k] = nearer ? at : depth[k];
             face[k] = nearer ? run.face : face[k];
         }
