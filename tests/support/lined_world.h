@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/visibility/light_lines.h"
+#include "solver/visibility/static_pass.h"
 #include "tests/support/worlds.h"
 
 namespace afterglow::testing {
@@ -30,5 +30,13 @@ struct LinedWorld {
         return make_patches(world, std::move(surfaces), all, {.patch_size_m = size});
     }
 };
+
+/// What its static lines see without actors.
+inline StaticLines background_of(const LinedWorld& lined) {
+    StaticLines lines = make_static_lines(lined.mesh, lined.sight, lined.light);
+    extend_static_lines(lines, lined.mesh, lined.sight, lined.light, lined.caster,
+                        lined.sight.lines_per_patch(), Context(2));
+    return lines;
+}
 
 }  // namespace afterglow::testing

@@ -9,6 +9,7 @@
 namespace afterglow {
 namespace {
 
+using testing::background_of;
 using testing::LinedWorld;
 
 VisibleLines seen_by(VisibilityStrategy& strategy, const LinedWorld& lined, const StaticLines& background) {
@@ -16,13 +17,6 @@ VisibleLines seen_by(VisibilityStrategy& strategy, const LinedWorld& lined, cons
     strategy.update({lined.mesh, lined.sight, lined.light, lined.caster, background},
                     {0, lined.sight.lines_per_patch()}, visible, Context(2));
     return visible;
-}
-
-StaticLines background_of(const LinedWorld& lined) {
-    StaticLines lines = make_static_lines(lined.mesh, lined.sight, lined.light);
-    extend_static_lines(lines, lined.mesh, lined.sight, lined.light, lined.caster,
-                        lined.sight.lines_per_patch(), Context(2));
-    return lines;
 }
 
 /// The room with actors on random paths; one goes through walls and out of the room.

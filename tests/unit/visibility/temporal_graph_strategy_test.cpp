@@ -10,17 +10,11 @@
 namespace afterglow {
 namespace {
 
+using testing::background_of;
 using testing::LinedWorld;
 using testing::Movements;
 
 constexpr FrameClock clock_of_tests{12};
-
-StaticLines background_of(const LinedWorld& lined) {
-    StaticLines lines = make_static_lines(lined.mesh, lined.sight, lined.light);
-    extend_static_lines(lines, lined.mesh, lined.sight, lined.light, lined.caster,
-                        lined.sight.lines_per_patch(), Context(2));
-    return lines;
-}
 
 /// A world, its backgrounds, and what both strategies see of it.
 struct Contest {
