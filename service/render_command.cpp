@@ -57,14 +57,14 @@ std::string finished_line(const FrameStatistics& frame, const FrameRange& range)
 /// One frame, solved and written. The static pass runs within the first frame but is not counted as its time.
 FrameStatistics render_frame(SequenceState& state, int frame, const fs::path& out, const Context& context) {
     const auto begin = Clock::now();
-    const Milliseconds static_before = state.statistics().static_pass;
+    const Milliseconds outside_before = state.statistics().outside_frames();
     Revision final_picture;
     const auto keep_final = [&](const Revision& revision) {
         if (revision.final) final_picture = revision;
     };
     FrameStatistics statistics = step(state, frame, keep_final, context);
     write_frame(out, frame, final_picture.radiance, final_picture.srgb);
-    statistics.total = Clock::now() - begin - (state.statistics().static_pass - static_before);
+    statistics.total = Clock::now() - begin - (state.statistics().outside_frames() - outside_before);
     return statistics;
 }
 

@@ -156,8 +156,7 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     SequenceState::Parts& parts = state.parts();
     if (frame_number < 0) throw Error(ErrorKind::invalid_input, "frame", "must be 0 or more");
     const Stopwatch watch;
-    const Milliseconds static_before = parts.statistics.static_pass;
-    const Milliseconds ahead_before = total(parts.statistics.work_ahead);
+    const Milliseconds outside_before = parts.statistics.outside_frames();
     if (!parts.exposure_ev) parts.exposure_ev = find_exposure(parts, context.part(0, 0.1));
 
     FrameRefinement frame(parts, frame_number);
@@ -189,8 +188,7 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     parts.visible_before = parts.visible.patch;
     const auto ahead = parts.strategy->work_ahead();
     parts.statistics.work_ahead.assign(ahead.begin(), ahead.end());
-    statistics.total = watch.elapsed() - (parts.statistics.static_pass - static_before) -
-                       (total(parts.statistics.work_ahead) - ahead_before);
+    statistics.total = watch.elapsed() - (parts.statistics.outside_frames() - outside_before);
     context.report(1, "frame finished");
     return statistics;
 }

@@ -39,7 +39,10 @@ struct SequenceStatistics {
     Milliseconds setup{};        ///< meshing and acceleration structures
     Milliseconds static_pass{};  ///< sight lines against the furniture, or reading them from the cache
     bool static_from_cache = false;
-    std::vector<WorkAhead> work_ahead;  ///< what was done for ranges of frames at once; in no frame's total
+    std::vector<WorkAhead> work_ahead;  ///< what was done for ranges of frames at once
+
+    /// Time spent within `step` that is in no frame's total.
+    [[nodiscard]] Milliseconds outside_frames() const { return static_pass + total(work_ahead); }
 };
 
 /// A picture on its way to a frame: linear radiance, and the same ready to be shown.

@@ -143,8 +143,16 @@ class Frames(Case):
         self.assertEqual([line for line in quiet.splitlines() if "warning: " not in line], [])
 
     def test_report(self):
+        self.check_report("baum86")
+
+    def test_report_of_a_method_that_works_ahead(self):
+        precompute = self.check_report("events")["precompute"]
+        self.assertEqual([(p["first_frame"] <= 2, p["last_frame"] >= 4) for p in precompute], [(True, True)])
+        self.assertGreater(precompute[0]["ms"], 0)
+
+    def check_report(self, method):
         begin = time.monotonic()
-        self.render("--frames", "2-4", "--report", "report.json")
+        self.render("--frames", "2-4", "--method", method, "--report", "report.json")
         wall_ms = 1000 * (time.monotonic() - begin)
         report = json.loads((self.folder / "report.json").read_text())
         self.assertEqual(set(report), {"scene", "method", "patches", "actor_patches", "sight_lines", "rays_per_patch",
@@ -168,6 +176,7 @@ class Frames(Case):
             total += ms["total"]
         # No part may be counted twice.
         self.assertLessEqual(total, wall_ms)
+        return report
 
     def test_estimate(self):
         self.render("--frames", "2", "--report", "report.json", "--estimate", "probes")
