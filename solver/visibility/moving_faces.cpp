@@ -280,7 +280,8 @@ Cuts cut(const Views& views, const typename Views::Corner& a, const typename Vie
         out.low_z[l] = ordered ? uz : vz;
         out.high_x[l] = ordered ? vx : ux;
         out.high_z[l] = ordered ? vz : uz;
-        const bool in_time = (out.low_x[l] <= 0) & (out.high_x[l] + views.steps * views.step_across(l) >= 0);
+        const float last_x = out.high_x[l] + views.steps * views.step_across(l);
+        const bool in_time = (out.low_x[l] <= 0) & (last_x >= 0);
         out.cut[l] = (static_cast<std::int32_t>(ab) | static_cast<std::int32_t>(bc)) &
                      static_cast<std::int32_t>(in_time);
     }
