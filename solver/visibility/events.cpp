@@ -52,23 +52,24 @@ class Events : public VisibilityStrategy {
     /// Frame by frame from the one shown to the one asked for.
     void move_to(const LineScene& scene, VisibleLines& visible) {
         const int first = window_->actors.frames().first;
-        for (int f = *shown_ + 1; f <= scene.frame; ++f) apply(f - first, scene, visible);
-        for (int f = *shown_; f > scene.frame; --f) revert(f - first, scene, visible);
+        for (int f = *shown_ + 1; f <= scene.frame; ++f) show_all(f - first, &LineEvent::to, scene, visible);
+        for (int f = *shown_; f > scene.frame; --f) show_all(f - first, &LineEvent::from, scene, visible);
     }
 
-    void apply(int f, const LineScene& scene, VisibleLines& visible) const {
-        for (const LineEvents& events : window_->sight)
-            for (const LineEvent& event : events.at(f)) visible.patch[event.line] = event.to;
-        for (const LineEvent& event : window_->light.at(f)) show_lamp(event.line, event.to, scene, visible);
+    /// Shows one side of a frame's events: what they lead to or, to go back, what they come from.
+    using Shown = Index LineEvent::*;
+    void show_all(int f, Shown shown, const LineScene& scene, VisibleLines& visible) const {
+        for (const LineEvents& events : window_->sight) show_patches(events.at(f), shown, visible);
+        show_lamps(window_->light.at(f), shown, scene, visible);
     }
-    void revert(int f, const LineScene& scene, VisibleLines& visible) const {
-        for (const LineEvents& events : window_->sight)
-            for (const LineEvent& event : events.at(f)) visible.patch[event.line] = event.from;
-        for (const LineEvent& event : window_->light.at(f)) show_lamp(event.line, event.from, scene, visible);
+    static void show_patches(std::span<const LineEvent> events, Shown shown, VisibleLines& visible) {
+        for (const LineEvent& event : events) visible.patch[event.line] = event.*shown;
     }
-    static void show_lamp(Index line, Index state, const LineScene& scene, VisibleLines& visible) {
-        visible.light_contribution[line] =
-            state == lamp_open ? scene.background.light_contribution[line] : 0.0F;
+    static void show_lamps(std::span<const LineEvent> events, Shown shown, const LineScene& scene,
+                           VisibleLines& visible) {
+        for (const LineEvent& event : events)
+            visible.light_contribution[event.line] =
+                event.*shown == lamp_open ? scene.background.light_contribution[event.line] : 0.0F;
     }
 
     /// Finds the events of directions up to `last` and shows those directions at the frame asked for.
@@ -91,9 +92,8 @@ class Events : public VisibilityStrategy {
                       visible.light_contribution.begin());
         const FrameSpan frames = window.actors.frames();
         for (int f = 0; f <= scene.frame - frames.first; ++f) {
-            for (const LineEvent& event : window.sight.back().at(f)) visible.patch[event.line] = event.to;
-            if (!first_time) continue;
-            for (const LineEvent& event : window.light.at(f)) show_lamp(event.line, event.to, scene, visible);
+            show_patches(window.sight.back().at(f), &LineEvent::to, visible);
+            if (first_time) show_lamps(window.light.at(f), &LineEvent::to, scene, visible);
         }
         window_.emplace(std::move(window));
         note(frames, watch.elapsed());

@@ -17,10 +17,7 @@ struct TimedEvent {
 };
 
 /// The events of a chunk of blocks, line by line.
-struct Part {
-    std::vector<TimedEvent> events;
-    std::uint64_t lines = 0;
-};
+using Part = std::vector<TimedEvent>;
 
 /// What the faces in a lane's time buffer are patches of.
 class Targets {
@@ -90,15 +87,13 @@ class Targets {
 void put_events(Index line, Index background, int first, std::span<const Index> seen, int frames,
                 Part& part) {
     Index before = background;
-    const std::size_t count = part.events.size();
     for (std::size_t k = 0; k < seen.size(); ++k) {
         if (seen[k] == before) continue;
-        part.events.push_back({first + static_cast<int>(k), {line, before, seen[k]}});
+        part.push_back({first + static_cast<int>(k), {line, before, seen[k]}});
         before = seen[k];
     }
     const int after = first + static_cast<int>(seen.size());
-    if (before != background && after < frames) part.events.push_back({after, {line, before, background}});
-    part.lines += part.events.size() > count ? 1U : 0U;
+    if (before != background && after < frames) part.push_back({after, {line, before, background}});
 }
 
 /// All parts' events by frame; within a frame in the order of the parts.
@@ -110,8 +105,7 @@ LineEvents by_frame(const std::vector<Part>& parts, int frames, const Context& c
     context.for_chunks(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
             places[p].assign(count, 0);
-            for (const TimedEvent& timed : parts[p].events)
-                ++places[p][static_cast<std::size_t>(timed.frame)];
+            for (const TimedEvent& timed : parts[p]) ++places[p][static_cast<std::size_t>(timed.frame)];
         }
     });
     std::size_t next = 0;
@@ -123,10 +117,9 @@ LineEvents by_frame(const std::vector<Part>& parts, int frames, const Context& c
     out.list.resize(next);
     context.for_chunks(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p)
-            for (const TimedEvent& timed : parts[p].events)
+            for (const TimedEvent& timed : parts[p])
                 out.list[places[p][static_cast<std::size_t>(timed.frame)]++] = timed.event;
     });
-    for (const Part& part : parts) out.lines_that_change += part.lines;
     return out;
 }
 

@@ -22,7 +22,6 @@ inline constexpr Index lamp_hidden = 1;  ///< an actor does
 struct LineEvents {
     std::vector<std::size_t> first_of_frame;  ///< size frames + 1
     std::vector<LineEvent> list;
-    std::uint64_t lines_that_change = 0;  ///< lines with any event
 
     [[nodiscard]] std::span<const LineEvent> at(int frame) const {
         const auto f = static_cast<std::size_t>(frame);

@@ -4,15 +4,6 @@ namespace afterglow::testing {
 
 namespace {
 
-void add_triangle(Body& body, const Vec3& a, const Vec3& b, const Vec3& c, Index material) {
-    const auto first = static_cast<Index>(body.positions.size());
-    for (const Vec3& p : {a, b, c}) {
-        body.positions.push_back(p);
-        body.texture_coordinates.emplace_back(0);
-    }
-    body.triangles.push_back({{first, first + 1, first + 2}, material});
-}
-
 Body& add_body(World& world, const std::string& name, Path path) {
     Body& body = world.bodies.emplace_back();
     body.name = name;

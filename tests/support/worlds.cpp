@@ -5,8 +5,6 @@
 
 namespace afterglow::testing {
 
-namespace {
-
 void add_triangle(Body& body, const Vec3& a, const Vec3& b, const Vec3& c, Index material) {
     const auto first = static_cast<Index>(body.positions.size());
     for (const Vec3& p : {a, b, c}) {
@@ -15,6 +13,8 @@ void add_triangle(Body& body, const Vec3& a, const Vec3& b, const Vec3& c, Index
     }
     body.triangles.push_back({{first, first + 1, first + 2}, material});
 }
+
+namespace {
 
 void add_ball_part(Body& body, const Vec3& centre, float radius, const std::array<Vec3, 3>& corners,
                    int levels, Index material) {

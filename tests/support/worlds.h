@@ -13,6 +13,9 @@ Material diffuse(const std::string& name, Rgb reflectance, Rgb emission = Rgb(0)
 enum class Facing { outwards, inwards };
 void add_box(Body& body, const Vec3& low, const Vec3& high, Index material, Facing facing = Facing::outwards);
 
+/// Adds a triangle with corners of its own.
+void add_triangle(Body& body, const Vec3& a, const Vec3& b, const Vec3& c, Index material);
+
 /// Adds a parallelogram whose front is on the side of edge_u × edge_v.
 void add_quad(Body& body, const Vec3& corner, const Vec3& edge_u, const Vec3& edge_v, Index material);
 
