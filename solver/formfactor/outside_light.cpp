@@ -46,16 +46,16 @@ std::vector<LightInPlace> lights_at(const World& world, double time_s) {
     return lights;
 }
 
-std::vector<Rgb> sky_irradiance(const World& world, const FormFactors& factors) {
-    std::vector<Rgb> irradiance(factors.sky.size());
+std::vector<Rgb> sky_irradiance(const World& world, std::span<const float> sky) {
+    std::vector<Rgb> irradiance(sky.size());
     for (std::size_t p = 0; p < irradiance.size(); ++p)
-        irradiance[p] = pi * factors.sky[p] * world.background;
+        irradiance[p] = pi * sky[p] * world.background;
     return irradiance;
 }
 
 std::vector<Rgb> light_irradiance(std::span<const LightInPlace> lights, const PatchMesh& mesh,
                                   const SightLines& lines, const RayCaster& placed,
-                                  const FormFactors& factors, std::uint64_t& rays_traced,
+                                  std::span<const float> valid_share, std::uint64_t& rays_traced,
                                   const Context& context) {
     std::vector<Rgb> irradiance(mesh.size(), Rgb(0));
     if (lights.empty()) return irradiance;
@@ -65,7 +65,7 @@ std::vector<Rgb> light_irradiance(std::span<const LightInPlace> lights, const Pa
         std::uint64_t count = 0;
         for (std::size_t i = begin; i < end; ++i) {
             const auto p = static_cast<Index>(i);
-            if (factors.valid_share[p] <= 0) continue;
+            if (valid_share[p] <= 0) continue;
             const Pose& pose = placed.pose(mesh.body[p]);
             Rgb sum(0);
             for (std::size_t k = 0; k < points_per_patch; ++k) {
@@ -83,7 +83,7 @@ std::vector<Rgb> light_irradiance(std::span<const LightInPlace> lights, const Pa
                 }
             }
             // Buried points are in the dark; the others stand for the whole patch.
-            irradiance[p] += sum / (static_cast<float>(points_per_patch) * factors.valid_share[p]);
+            irradiance[p] += sum / (static_cast<float>(points_per_patch) * valid_share[p]);
         }
         traced += count;
     });

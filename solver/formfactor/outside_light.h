@@ -17,14 +17,14 @@ struct LightInPlace {
 std::vector<LightInPlace> lights_at(const World& world, double time_s);
 
 /// Irradiance of all patches, W/m², from the uniform background, by each patch's share of sky.
-std::vector<Rgb> sky_irradiance(const World& world, const FormFactors& factors);
+std::vector<Rgb> sky_irradiance(const World& world, std::span<const float> sky);
 
 /// Irradiance of all patches, W/m², from lights without a surface, by several points of each patch with
-/// shadow rays against everything the caster has placed. Adds the number of rays to `rays_traced`. Errors:
-/// cancelled.
+/// shadow rays against everything the caster has placed. `valid_share` by patch, as in FormFactors. Adds the
+/// number of rays to `rays_traced`. Errors: cancelled.
 std::vector<Rgb> light_irradiance(std::span<const LightInPlace> lights, const PatchMesh& mesh,
                                   const SightLines& lines, const RayCaster& placed,
-                                  const FormFactors& factors, std::uint64_t& rays_traced,
+                                  std::span<const float> valid_share, std::uint64_t& rays_traced,
                                   const Context& context);
 
 /// Irradiance that a light without surface gives a point if nothing stands between, and the way to it.

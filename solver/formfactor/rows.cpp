@@ -7,7 +7,7 @@ namespace afterglow {
 
 namespace {
 
-constexpr std::size_t blocks_per_chunk = 16;
+constexpr std::size_t rows_per_chunk = 256;
 
 /// A centre in one body's frame, seen from another's.
 Vec3 moved(const RayCaster& placed, Index from, Index to, const Vec3& point) {
@@ -16,7 +16,7 @@ Vec3 moved(const RayCaster& placed, Index from, Index to, const Vec3& point) {
     return glm::conjugate(target.rotation) * (placed.pose(from).point(point) - target.translation);
 }
 
-/// Rows of some consecutive blocks, before they are joined.
+/// Some consecutive rows, before they are joined.
 struct Part {
     std::vector<Index> row_size;
     std::vector<Index> column;
@@ -63,13 +63,12 @@ class RowCompiler {
           seen_(seen),
           out_(out) {}
 
-    void compile(std::size_t block_index, RowBuilder& row, Part& part) const {
-        const PatchBlock& block = lines_.blocks()[block_index];
-        for (Index lane = 0; lane < block.count; ++lane) {
-            row.begin(part);
-            compile_row(block_index, block, lane, row);
-            row.end();
-        }
+    /// The row of a patch, the `place`-th asked for.
+    void compile(Index patch, std::size_t place, RowBuilder& row, Part& part) const {
+        row.begin(part);
+        const std::size_t block = lines_.block_of(patch);
+        compile_row(block, patch, place, row);
+        row.end();
     }
 
   private:
@@ -96,19 +95,20 @@ class RowCompiler {
         return count;
     }
 
-    void compile_row(std::size_t block_index, const PatchBlock& block, Index lane, RowBuilder& row) const {
-        const Index patch = block.first + lane;
-        const std::vector<char> near = lamps_near(patch);
+    void compile_row(std::size_t block_index, Index patch, std::size_t place, RowBuilder& row) const {
+        const PatchBlock& block = lines_.blocks()[block_index];
+        const Index lane = patch - block.first;
+        const std::vector<char> near = lamps_near(mesh_, lamps_, placed_, patch);
         const auto by_light_lines = [&](Index target) {
             const Index lamp = lamps_.lamp_of_patch[target];
             return lamp != no_index && near[lamp] == 0;
         };
         const Count count = count_lines(block, lane, by_light_lines);
-        out_.valid_share[patch] = static_cast<float>(count.valid()) / static_cast<float>(seen_.directions);
+        out_.valid_share[place] = static_cast<float>(count.valid()) / static_cast<float>(seen_.directions);
         if (count.valid() == 0) return;
 
         // Buried origins gave zeros; the others stand for the whole patch.
-        const float scale = 1 / out_.valid_share[patch];
+        const float scale = 1 / out_.valid_share[place];
         float from_lamps = 0;
         for (Index k = 0; k < light_lines_.lines_per_patch(); ++k)
             if (by_light_lines(light_lines_.lamp_patch(block_index, k)))
@@ -118,7 +118,7 @@ class RowCompiler {
             // Lamps fill the view: sight lines count them better than light lines can.
             add_sight_lines(block, lane, 1 / static_cast<float>(count.valid()), row,
                             [](Index) { return true; });
-            out_.sky[patch] = static_cast<float>(count.outside) / static_cast<float>(count.valid());
+            out_.sky[place] = static_cast<float>(count.outside) / static_cast<float>(count.valid());
             return;
         }
         for (Index k = 0; k < light_lines_.lines_per_patch(); ++k) {
@@ -128,7 +128,7 @@ class RowCompiler {
         }
         const float weight = (1 - from_lamps) / static_cast<float>(others);
         add_sight_lines(block, lane, weight, row, [&](Index target) { return !by_light_lines(target); });
-        out_.sky[patch] = weight * static_cast<float>(count.outside);
+        out_.sky[place] = weight * static_cast<float>(count.outside);
     }
 
     template <class Counts>
@@ -138,16 +138,6 @@ class RowCompiler {
             const Index target = seen_.visible[lines_.line(block, d, lane)];
             if (target != sees_nothing && target != sees_inside && counts(target)) row.add(target, weight);
         }
-    }
-
-    [[nodiscard]] std::vector<char> lamps_near(Index patch) const {
-        std::vector<char> near(lamps_.list.size(), 0);
-        for (std::size_t l = 0; l < near.size(); ++l) {
-            const Lamp& lamp = lamps_.list[l];
-            near[l] = static_cast<char>(
-                is_near(lamp, moved(placed_, mesh_.body[patch], lamp.body, mesh_.centre[patch]), {}));
-        }
-        return near;
     }
 
     const PatchMesh& mesh_;
@@ -183,21 +173,40 @@ FormFactorMatrix join(const std::vector<Part>& parts, std::size_t rows, const Co
 
 }  // namespace
 
+std::vector<char> lamps_near(const PatchMesh& mesh, const Lamps& lamps, const RayCaster& placed,
+                             Index patch) {
+    std::vector<char> near(lamps.list.size(), 0);
+    for (std::size_t l = 0; l < near.size(); ++l) {
+        const Lamp& lamp = lamps.list[l];
+        near[l] = static_cast<char>(
+            is_near(lamp, moved(placed, mesh.body[patch], lamp.body, mesh.centre[patch]), {}));
+    }
+    return near;
+}
+
+FormFactors compile_rows_of(std::span<const Index> patches, const PatchMesh& mesh, const SightLines& lines,
+                            const LightLines& light_lines, const Lamps& lamps, const RayCaster& placed,
+                            const SeenLines& seen, const Context& context) {
+    FormFactors out;
+    out.sky.assign(patches.size(), 0);
+    out.valid_share.assign(patches.size(), 0);
+    const RowCompiler compiler(mesh, lines, light_lines, lamps, placed, seen, out);
+    std::vector<Part> parts((patches.size() + rows_per_chunk - 1) / rows_per_chunk);
+    context.for_chunks(patches.size(), rows_per_chunk, [&](std::size_t begin, std::size_t end) {
+        RowBuilder row(mesh.size());
+        for (std::size_t k = begin; k < end; ++k)
+            compiler.compile(patches[k], k, row, parts[begin / rows_per_chunk]);
+    });
+    out.matrix = join(parts, patches.size(), context);
+    return out;
+}
+
 FormFactors compile_rows(const PatchMesh& mesh, const SightLines& lines, const LightLines& light_lines,
                          const Lamps& lamps, const RayCaster& placed, const SeenLines& seen,
                          const Context& context) {
-    FormFactors out;
-    out.sky.assign(mesh.size(), 0);
-    out.valid_share.assign(mesh.size(), 0);
-    const RowCompiler compiler(mesh, lines, light_lines, lamps, placed, seen, out);
-    const std::size_t blocks = lines.blocks().size();
-    std::vector<Part> parts((blocks + blocks_per_chunk - 1) / blocks_per_chunk);
-    context.for_chunks(blocks, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
-        RowBuilder row(mesh.size());
-        for (std::size_t b = begin; b < end; ++b) compiler.compile(b, row, parts[begin / blocks_per_chunk]);
-    });
-    out.matrix = join(parts, mesh.size(), context);
-    return out;
+    std::vector<Index> all(mesh.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    return compile_rows_of(all, mesh, lines, light_lines, lamps, placed, seen, context);
 }
 
 }  // namespace afterglow

@@ -31,4 +31,13 @@ FormFactors compile_rows(const PatchMesh& mesh, const SightLines& lines, const L
                          const Lamps& lamps, const RayCaster& placed, const SeenLines& seen,
                          const Context& context);
 
+/// The rows of some patches only, in the order given: row k of the matrix and element k of `sky` and
+/// `valid_share` belong to patches[k].
+FormFactors compile_rows_of(std::span<const Index> patches, const PatchMesh& mesh, const SightLines& lines,
+                            const LightLines& light_lines, const Lamps& lamps, const RayCaster& placed,
+                            const SeenLines& seen, const Context& context);
+
+/// By lamp: 1 where it is so near a patch that sight lines count it and light lines do not.
+std::vector<char> lamps_near(const PatchMesh& mesh, const Lamps& lamps, const RayCaster& placed, Index patch);
+
 }  // namespace afterglow

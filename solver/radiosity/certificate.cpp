@@ -9,36 +9,36 @@
 
 namespace afterglow {
 
-namespace {
+void ReflectedMean::Sum::add(const Sum& other) {
+    area += other.area;
+    for (int c = 0; c < 3; ++c) power[c] += other.power[c];
+}
+double ReflectedMean::Sum::largest_channel() const {
+    return area > 0 ? std::max({power[0], power[1], power[2]}) / area : 0;
+}
 
-/// Area-weighted sum of ρH, in double because thousands of small patches must not vanish beside the sum so
-/// far.
-class ReflectedMean {
-  public:
-    void add(double area, const Rgb& reflected) {
-        area_ += area;
-        for (int c = 0; c < 3; ++c) power_[c] += area * static_cast<double>(reflected[c]);
-    }
-    [[nodiscard]] double largest_channel() const {
-        return area_ > 0 ? std::max({power_[0], power_[1], power_[2]}) / area_ : 0;
-    }
-
-  private:
-    double area_ = 0;
-    double power_[3] = {0, 0, 0};
-};
-
-}  // namespace
+void ReflectedMean::add(float area_m2, const Rgb& emission, const Rgb& reflected) {
+    const double area = area_m2;
+    Sum patch{area, {}};
+    for (int c = 0; c < 3; ++c) patch.power[c] = area * static_cast<double>(reflected[c]);
+    (max_channel(emission) <= 0 ? others_ : emitters_).add(patch);
+}
+void ReflectedMean::add(const ReflectedMean& other) {
+    others_.add(other.others_);
+    emitters_.add(other.emitters_);
+}
+double ReflectedMean::value() const {
+    if (const double mean = others_.largest_channel(); mean > 0) return mean;
+    Sum all = others_;
+    all.add(emitters_);
+    return all.largest_channel();
+}
 
 double mean_reflected(const RadiosityProblem& problem, std::span<const Rgb> irradiance) {
-    ReflectedMean others;
-    ReflectedMean all;
-    for (std::size_t i = 0; i < problem.patches(); ++i) {
-        const Rgb reflected = problem.reflectance[i] * irradiance[i];
-        all.add(problem.area[i], reflected);
-        if (max_channel(problem.emission[i]) <= 0) others.add(problem.area[i], reflected);
-    }
-    return others.largest_channel() > 0 ? others.largest_channel() : all.largest_channel();
+    ReflectedMean mean;
+    for (std::size_t i = 0; i < problem.patches(); ++i)
+        mean.add(problem.area[i], problem.emission[i], problem.reflectance[i] * irradiance[i]);
+    return mean.value();
 }
 
 Certificate make_certificate(double residual, double gain, double reflected) {

@@ -24,6 +24,27 @@ struct Certificate {
 /// left and infinity otherwise.
 double mean_reflected(const RadiosityProblem& problem, std::span<const Rgb> irradiance);
 
+/// The same from sums over some patches, added in a fixed order. In double, because thousands of small
+/// patches must not vanish beside the sum so far.
+class ReflectedMean {
+  public:
+    /// One patch with its ρH, W/m².
+    void add(float area_m2, const Rgb& emission, const Rgb& reflected);
+    /// What another has summed.
+    void add(const ReflectedMean& other);
+    [[nodiscard]] double value() const;
+
+  private:
+    struct Sum {
+        double area = 0;
+        double power[3] = {0, 0, 0};
+        void add(const Sum& other);
+        [[nodiscard]] double largest_channel() const;
+    };
+    Sum others_;    // of patches that do not emit
+    Sum emitters_;  // of those that do
+};
+
 /// The certificate that follows from a residual given in W/m² and from mean_reflected.
 Certificate make_certificate(double residual, double gain, double reflected);
 

@@ -2,33 +2,27 @@
 
 namespace afterglow {
 
-namespace {
-
-using DoubleVector = double __attribute__((vector_size(32)));
-
-Lanes::Vector gather_row(const FormFactorMatrix& matrix, std::size_t row, const Lanes* radiosity) {
+DoubleLanes gather_row(const FormFactorMatrix& matrix, std::size_t row, std::span<const Lanes> radiosity) {
     const Index* const column = matrix.column.data();
     const float* const value = matrix.value.data();
     const std::uint64_t end = matrix.row_begin[row + 1];
     std::uint64_t e = matrix.row_begin[row];
     const auto light = [&](std::uint64_t entry) { return value[entry] * radiosity[column[entry]].v; };
-    DoubleVector sum{};
+    DoubleLanes sum;
     for (; e + 4 <= end; e += 4) {
         const Lanes::Vector run = (light(e) + light(e + 1)) + (light(e + 2) + light(e + 3));
-        sum += __builtin_convertvector(run, DoubleVector);
+        sum.v += __builtin_convertvector(run, DoubleLanes::Vector);
     }
-    for (; e < end; ++e) sum += __builtin_convertvector(light(e), DoubleVector);
-    return __builtin_convertvector(sum, Lanes::Vector);
+    for (; e < end; ++e) sum.v += __builtin_convertvector(light(e), DoubleLanes::Vector);
+    return sum;
 }
-
-}  // namespace
 
 void gather(const FormFactorMatrix& matrix, std::span<const Lanes> radiosity, std::span<Lanes> irradiance,
             const Context& context) {
     constexpr std::size_t chunk = 256;
     context.for_chunks(matrix.rows(), chunk, [&](std::size_t first, std::size_t last) {
         for (std::size_t row = first; row < last; ++row)
-            irradiance[row].v = gather_row(matrix, row, radiosity.data());
+            irradiance[row].v = __builtin_convertvector(gather_row(matrix, row, radiosity).v, Lanes::Vector);
     });
 }
 

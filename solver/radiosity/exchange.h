@@ -17,6 +17,16 @@ struct Lanes {
     Vector v{};
 };
 
+/// The same in double, for sums that many small terms are added to one by one.
+struct DoubleLanes {
+    using Vector = double __attribute__((vector_size(32)));
+    Vector v{};
+};
+
+inline DoubleLanes to_double(const Lanes& lanes) {
+    return {__builtin_convertvector(lanes.v, DoubleLanes::Vector)};
+}
+
 inline Lanes to_lanes(const Rgb& c) {
     return {Lanes::Vector{c.r, c.g, c.b, 0.0F}};
 }
@@ -34,6 +44,9 @@ inline constexpr double gather_rounding = 8 * 0x1p-24;
 /// row, not overlapping. Same bits for any number of threads.
 void gather(const FormFactorMatrix& matrix, std::span<const Lanes> radiosity, std::span<Lanes> irradiance,
             const Context& context);
+
+/// Σ_j F_ij B_j of one row, before it is rounded to float.
+DoubleLanes gather_row(const FormFactorMatrix& matrix, std::size_t row, std::span<const Lanes> radiosity);
 
 /// Adds F_ji ΔB_i to `irradiance[j]` for every receiver j of every shooting patch i, in the order given.
 /// `shot`: ΔB by patch, W/m². One thread: large batches are better gathered.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "solver/base/error.h"
 #include "solver/visibility/line_events.h"
@@ -29,6 +30,13 @@ class Events : public VisibilityStrategy {
     [[nodiscard]] bool needs_background() const override { return true; }
     [[nodiscard]] std::span<const WorkAhead> work_ahead() const override { return work_ahead_; }
 
+    [[nodiscard]] std::optional<LineChanges> take_changes() override {
+        const bool known = std::exchange(changes_known_, true);
+        LineChanges taken = std::exchange(changes_, {});
+        if (!known) return std::nullopt;
+        return taken;
+    }
+
     std::uint64_t update(const LineScene& scene, const DirectionRange& range, VisibleLines& visible,
                          const Context& context) override {
         if (!window_ || !window_->actors.frames().contains(scene.frame))
@@ -47,17 +55,36 @@ class Events : public VisibilityStrategy {
         window_.emplace(Window{
             SweptActors(world_, trees_, clock_, {first, first + config_.frames_per_window - 1}), {}, {}, 0});
         shown_.reset();
+        forget_changes();
+    }
+    /// What the lines are brought to next has nothing to do with what they showed before.
+    void forget_changes() {
+        changes_ = {};
+        changes_known_ = false;
     }
 
     /// Frame by frame from the one shown to the one asked for.
     void move_to(const LineScene& scene, VisibleLines& visible) {
         const int first = window_->actors.frames().first;
-        for (int f = *shown_ + 1; f <= scene.frame; ++f) show_all(f - first, &LineEvent::to, scene, visible);
-        for (int f = *shown_; f > scene.frame; --f) show_all(f - first, &LineEvent::from, scene, visible);
+        for (int f = *shown_ + 1; f <= scene.frame; ++f) {
+            show_all(f - first, &LineEvent::to, scene, visible);
+            if (changes_known_) note_changes(f - first, &LineEvent::from, &LineEvent::to);
+        }
+        for (int f = *shown_; f > scene.frame; --f) {
+            show_all(f - first, &LineEvent::from, scene, visible);
+            if (changes_known_) note_changes(f - first, &LineEvent::to, &LineEvent::from);
+        }
+    }
+
+    using Shown = Index LineEvent::*;
+    void note_changes(int f, Shown from, Shown to) {
+        for (const LineEvents& events : window_->sight)
+            for (const LineEvent& event : events.at(f))
+                changes_.sight.push_back({event.line, event.*from, event.*to});
+        for (const LineEvent& event : window_->light.at(f)) changes_.light.push_back(event.line);
     }
 
     /// Shows one side of a frame's events: what they lead to or, to go back, what they come from.
-    using Shown = Index LineEvent::*;
     void show_all(int f, Shown shown, const LineScene& scene, VisibleLines& visible) const {
         for (const LineEvents& events : window_->sight) show_patches(events.at(f), shown, visible);
         show_lamps(window_->light.at(f), shown, scene, visible);
@@ -75,6 +102,7 @@ class Events : public VisibilityStrategy {
     /// Finds the events of directions up to `last` and shows those directions at the frame asked for.
     void extend(const LineScene& scene, Index last, VisibleLines& visible, const Context& context) {
         const Stopwatch watch;
+        forget_changes();
         // Left for good only once all is done: a stop in the middle leaves no half-known window.
         Window window = std::move(*window_);
         window_.reset();
@@ -135,6 +163,8 @@ class Events : public VisibilityStrategy {
     std::optional<Window> window_;
     std::optional<int> shown_;  ///< the frame that all known directions are at
     std::vector<WorkAhead> work_ahead_;
+    bool changes_known_ = false;  ///< since somebody first asked, unless lines were brought anywhere at once
+    LineChanges changes_;
 };
 
 }  // namespace

@@ -25,6 +25,12 @@ SightLines::SightLines(const PatchMesh& mesh, const World& world, Index lines_pe
     }
 }
 
+std::size_t SightLines::block_of(Index patch) const {
+    const auto after = std::upper_bound(blocks_.begin(), blocks_.end(), patch,
+                                        [](Index p, const PatchBlock& block) { return p < block.first; });
+    return static_cast<std::size_t>(after - blocks_.begin()) - 1;
+}
+
 void SightLines::rays(std::size_t block, Index direction, const Pose& pose, RayPacket& out) const {
     const PatchBlock& b = blocks_[block];
     const Sample4 sample = points_.at(direction, mixed(seed_, block));

@@ -36,6 +36,8 @@ class SightLines {
     [[nodiscard]] const std::vector<PatchBlock>& blocks() const { return blocks_; }
     /// Blocks of the furniture come first: their number.
     [[nodiscard]] std::size_t static_blocks() const { return static_blocks_; }
+    /// The block that a patch belongs to.
+    [[nodiscard]] std::size_t block_of(Index patch) const;
     [[nodiscard]] std::size_t line(const PatchBlock& block, Index direction, Index lane) const {
         return static_cast<std::size_t>(block.first) * lines_per_patch_ +
                static_cast<std::size_t>(direction) * block.count + lane;

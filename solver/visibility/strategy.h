@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,19 @@ struct VisibleLines {
     std::vector<float> light_contribution;  ///< by light line, 0 where blocked
 };
 VisibleLines make_visible_lines(const PatchMesh& mesh, const SightLines& sight, const LightLines& light);
+
+/// A sight line of a static patch that came to see something else.
+struct LineChange {
+    Index line = 0;
+    Index from = 0, to = 0;  ///< patch, sees_nothing or sees_inside
+    bool operator==(const LineChange&) const = default;
+};
+
+/// Which lines of static patches changed, in the order in which they did.
+struct LineChanges {
+    std::vector<LineChange> sight;
+    std::vector<Index> light;  ///< light lines that an actor came to cover or left; may name one twice
+};
 
 /// The lines and what they are traced in, the caster's bodies standing where they are at this time.
 struct LineScene {
@@ -47,6 +61,9 @@ class VisibilityStrategy {
     /// the number of rays. Errors: cancelled.
     virtual std::uint64_t update(const LineScene& scene, const DirectionRange& range, VisibleLines& visible,
                                  const Context& context) = 0;
+    /// What the updates since the last call changed on static patches' lines, where the strategy knows it
+    /// without comparing.
+    [[nodiscard]] virtual std::optional<LineChanges> take_changes() { return std::nullopt; }
     /// Window by window, in order of time spent. Not part of any one frame's cost.
     [[nodiscard]] virtual std::span<const WorkAhead> work_ahead() const { return {}; }
 };

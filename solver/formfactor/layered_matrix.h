@@ -1,0 +1,102 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solver/formfactor/rows.h"
+#include "solver/visibility/strategy.h"
+
+namespace afterglow {
+
+/// A line of a static patch that sees something else than its background.
+struct CoveredLine {
+    Index line = 0;
+    Index base = 0;    ///< the column that the base counts it in; `nowhere` where in none
+    Index now = 0;     ///< the column that it counts in at this time, likewise
+    Index target = 0;  ///< what it sees at this time: patch, sees_nothing or sees_inside
+    float value = 0;
+};
+
+/// Rows of one kind of lines before they are scaled: what is there without actors, which never changes, and
+/// what actors cover. Row i of F gets scale[i] (base_i + Σ value (column now − column base)).
+struct LayeredRows {
+    FormFactorMatrix base;
+    FormFactorColumns columns;                      ///< of the base
+    std::vector<std::vector<CoveredLine>> covered;  ///< by row, in the order of lines
+    std::vector<float> scale;                       ///< by row
+};
+
+/// A line of a row that counted in one column and counts in another.
+struct RowChange {
+    Index row = 0, from = 0, to = 0;
+    float value = 0;
+};
+
+/// Changes in the order in which they were made; unscaled.
+struct RowChanges {
+    std::vector<RowChange> sight, light;
+    std::uint64_t lines = 0;  ///< sight lines that see something else, whether or not their columns differ
+};
+
+/// What the sight lines of a patch meet.
+struct LineTally {
+    Index outside = 0, buried = 0, on_lamps = 0, on_others = 0;
+    [[nodiscard]] Index valid() const { return outside + on_lamps + on_others; }
+};
+
+/// F of one moment as layers, so that the next moment costs what changes: static patches keep rows over which
+/// actors lie; rows of moving patches, and of those that lamps fill the view of, are compiled whole. In a
+/// scene with a lamp that moves all rows are: each of them changes at every frame. Meant to be read;
+/// `make_layered_matrix` and `show` write it.
+struct LayeredMatrix {
+    LayeredRows sight, light;
+    std::vector<Index> whole_rows;  ///< which rows are whole, increasing; the layers scale them by 0
+    FormFactorMatrix whole;         ///< row k belongs to patch whole_rows[k]
+    std::vector<float> sky;         ///< as in FormFactors
+    std::vector<float> valid_share;
+    std::vector<double> row_sum;  ///< Σ_j F_ij by row
+
+    /// For `show` only.
+    struct Ledger {
+        bool has_moving_lamps = false;
+        std::vector<LineTally> tally;      ///< by static patch
+        std::vector<double> from_lamps;    ///< by static patch: Σ of its light lines' values, none covered
+        std::vector<char> by_light_lines;  ///< by static patch and lamp
+    } ledger;
+
+    [[nodiscard]] std::size_t rows() const { return sky.size(); }
+    /// The column of lines that count in no column: one past the last patch.
+    [[nodiscard]] Index nowhere() const { return static_cast<Index>(sky.size()); }
+};
+
+/// What the layers are made of. `background` must be traced in all directions; `placed` has the bodies where
+/// they are at the moment shown.
+struct LayerScene {
+    const PatchMesh& mesh;
+    const SightLines& sight;
+    const LightLines& light;
+    const Lamps& lamps;
+    const RayCaster& placed;
+    const StaticLines& background;
+};
+
+/// The layers with all actors away; the rows of moving patches are still missing. Errors: too_large past 2³²
+/// lines; cancelled.
+LayeredMatrix make_layered_matrix(const LayerScene& scene, const Context& context);
+
+/// Brings the layers to what lines see now, comparing all static ones with what is shown. F is then that of
+/// compile_rows, up to rounding. Returns what changed in the layers. The same for any number of threads.
+/// Errors: cancelled; the matrix is then of no more use.
+RowChanges show(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
+                const Context& context);
+
+/// The same where the lines that changed since the last `show` are known: all of them, in any order, and
+/// once for each time they changed.
+RowChanges show(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
+                const LineChanges& changes, const Context& context);
+
+/// Irradiance that lamps alone give every patch, W/m²: Σ over their patches of F_ij E_j. `emission` by patch.
+std::vector<Rgb> lamp_irradiance(const LayeredMatrix& matrix, const Lamps& lamps,
+                                 std::span<const Rgb> emission, const Context& context);
+
+}  // namespace afterglow

@@ -1,0 +1,296 @@
+#include "solver/radiosity/residual.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "solver/base/error.h"
+
+namespace afterglow {
+
+namespace {
+
+constexpr std::size_t rows_per_chunk = 512;
+// Frames after which every sum has been computed afresh.
+constexpr std::size_t refresh_period = 64;
+
+void add_light(DoubleLanes& sum, float value, const DoubleLanes::Vector& light) {
+    sum.v += static_cast<double>(value) * light;
+}
+
+/// What a row of a layer gathers, computed afresh.
+DoubleLanes gather_layer(const LayeredRows& layer, std::size_t row, std::span<const Lanes> radiosity) {
+    DoubleLanes sum = gather_row(layer.base, row, radiosity);
+    for (const CoveredLine& line : layer.covered[row])
+        add_light(sum, line.value, to_double(radiosity[line.now]).v - to_double(radiosity[line.base]).v);
+    return sum;
+}
+
+void gather_rows(ResidualState& state, const ResidualProblem& problem, std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) {
+        state.by_sight[row] = gather_layer(problem.matrix.sight, row, state.radiosity);
+        state.by_light[row] = gather_layer(problem.matrix.light, row, state.radiosity);
+    }
+}
+
+void gather_whole(ResidualState& state, const ResidualProblem& problem, const Context& context) {
+    state.by_whole.resize(problem.matrix.whole_rows.size());
+    context.for_chunks(state.by_whole.size(), rows_per_chunk / 8, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k)
+            state.by_whole[k] = gather_row(problem.matrix.whole, k, state.radiosity);
+    });
+}
+
+double gain_of(const ResidualProblem& problem) {
+    double gain = 0;
+    for (std::size_t i = 0; i < problem.matrix.rows(); ++i)
+        gain = std::max(gain,
+                        static_cast<double>(max_channel(problem.reflectance[i])) * problem.matrix.row_sum[i]);
+    return gain;
+}
+
+/// Where a solution stands; a function of the state alone.
+struct Survey {
+    double largest = 0;  ///< ‖r‖∞, W/m²
+    double enough = 0;   ///< ‖r‖∞ that would meet the asked error
+    Certificate certificate;
+    bool only_rounding = false;
+};
+
+/// Computes irradiance and residual of all patches from the sums.
+class Surveyor {
+  public:
+    Surveyor(ResidualState& state, const ResidualProblem& problem) : state_(state), problem_(problem) {
+        whole_.assign(problem.matrix.rows(), no_index);
+        for (std::size_t k = 0; k < problem.matrix.whole_rows.size(); ++k)
+            whole_[problem.matrix.whole_rows[k]] = static_cast<Index>(k);
+    }
+
+    Survey look(double gain, double asked_error, const Context& context) {
+        std::vector<Part> parts((whole_.size() + rows_per_chunk - 1) / rows_per_chunk);
+        context.for_chunks(whole_.size(), rows_per_chunk, [&](std::size_t first, std::size_t last) {
+            parts[first / rows_per_chunk] = look_at(first, last);
+        });
+        Part all;
+        for (const Part& part : parts) {
+            all.largest = std::max(all.largest, part.largest);
+            all.brightest = std::max(all.brightest, part.brightest);
+            all.mean.add(part.mean);
+        }
+        const double left = gain * static_cast<double>(all.largest);
+        const double rounding = gather_rounding * static_cast<double>(all.brightest);
+        const double mean = all.mean.value();
+        Survey survey;
+        survey.largest = all.largest;
+        survey.enough = gain > 0 ? std::max(asked_error * mean * (1 - gain) - rounding, 0.0) / gain : 0;
+        survey.certificate = make_certificate(left + rounding, gain, mean);
+        survey.only_rounding = 8 * left <= rounding;
+        return survey;
+    }
+
+  private:
+    struct Part {
+        float largest = 0;    // residual
+        float brightest = 0;  // reflected
+        ReflectedMean mean;
+    };
+
+    Part look_at(std::size_t first, std::size_t last) {
+        const LayeredMatrix& matrix = problem_.matrix;
+        Part part;
+        for (std::size_t i = first; i < last; ++i) {
+            DoubleLanes::Vector sum = static_cast<double>(matrix.sight.scale[i]) * state_.by_sight[i].v +
+                                      static_cast<double>(matrix.light.scale[i]) * state_.by_light[i].v;
+            if (whole_[i] != no_index) sum += state_.by_whole[whole_[i]].v;
+            const Rgb irradiance =
+                to_rgb({__builtin_convertvector(sum, Lanes::Vector)}) + problem_.external_irradiance[i];
+            const Rgb reflected = problem_.reflectance[i] * irradiance;
+            state_.irradiance[i] = irradiance;
+            state_.residual[i] = problem_.emission[i] + reflected - to_rgb(state_.radiosity[i]);
+            part.largest = std::max(part.largest, max_channel(glm::abs(state_.residual[i])));
+            part.brightest = std::max(part.brightest, max_channel(glm::abs(reflected)));
+            part.mean.add(problem_.area[i], problem_.emission[i], reflected);
+        }
+        return part;
+    }
+
+    ResidualState& state_;
+    const ResidualProblem& problem_;
+    std::vector<Index> whole_;  // where a row stands among the whole ones
+};
+
+/// Changes radiosity by the residuals and lets the rows know.
+class Pusher {
+  public:
+    Pusher(ResidualState& state, const ResidualProblem& problem)
+        : state_(state), problem_(problem), change_(state.radiosity.size()) {}
+
+    /// Returns whether any radiosity changed at all.
+    bool push(const Survey& survey, const ResidualConfig& config, const Context& context) {
+        const double threshold =
+            std::max(config.push_share * survey.largest, config.least_share * survey.enough);
+        std::vector<Index> pushed;
+        for (std::size_t i = 0; i < state_.residual.size(); ++i)
+            if (static_cast<double>(max_channel(glm::abs(state_.residual[i]))) >= threshold)
+                pushed.push_back(static_cast<Index>(i));
+        const bool sweeps = entries_of(pushed) >= config.sweep_share * static_cast<double>(all_entries());
+        const bool moved = sweeps ? sweep(context) : push_along_columns(pushed, context);
+        gather_whole(state_, problem_, context);
+        ++state_.rounds;
+        return moved;
+    }
+
+  private:
+    [[nodiscard]] double entries_of(std::span<const Index> patches) const {
+        std::uint64_t entries = 0;
+        for (const LayeredRows* layer : {&problem_.matrix.sight, &problem_.matrix.light})
+            for (const Index i : patches)
+                entries += layer->columns.column_begin[i + 1] - layer->columns.column_begin[i];
+        return static_cast<double>(entries);
+    }
+    [[nodiscard]] std::uint64_t all_entries() const {
+        return problem_.matrix.sight.base.entries() + problem_.matrix.light.base.entries();
+    }
+
+    /// B takes up its residual; what it changed by, exactly, stays in change_.
+    bool take_up(std::size_t i) {
+        const Lanes before = state_.radiosity[i];
+        state_.radiosity[i] = to_lanes(to_rgb(before) + state_.residual[i]);
+        change_[i].v = to_double(state_.radiosity[i]).v - to_double(before).v;
+        const bool moved = change_[i].v[0] != 0 || change_[i].v[1] != 0 || change_[i].v[2] != 0;
+        state_.pushes += moved ? 1 : 0;
+        return moved;
+    }
+
+    bool sweep(const Context& context) {
+        bool moved = false;
+        for (std::size_t i = 0; i < state_.residual.size(); ++i) {
+            moved = take_up(i) || moved;
+            change_[i] = {};
+        }
+        ++state_.sweeps;
+        context.for_chunks(
+            problem_.matrix.rows(), rows_per_chunk / 4,
+            [&](std::size_t first, std::size_t last) { gather_rows(state_, problem_, first, last); });
+        return moved;
+    }
+
+    bool push_along_columns(std::span<const Index> patches, const Context& context) {
+        bool moved = false;
+        for (const Index i : patches) moved = take_up(i) || moved;
+        send(problem_.matrix.sight.columns, patches, state_.by_sight);
+        send(problem_.matrix.light.columns, patches, state_.by_light);
+        context.for_chunks(problem_.matrix.rows(), rows_per_chunk, [&](std::size_t first, std::size_t last) {
+            for (std::size_t row = first; row < last; ++row) {
+                cover(problem_.matrix.sight.covered[row], state_.by_sight[row]);
+                cover(problem_.matrix.light.covered[row], state_.by_light[row]);
+            }
+        });
+        for (const Index i : patches) change_[i] = {};
+        return moved;
+    }
+
+    void send(const FormFactorColumns& columns, std::span<const Index> patches,
+              std::span<DoubleLanes> sums) const {
+        for (const Index i : patches) {
+            const DoubleLanes::Vector change = change_[i].v;
+            for (std::uint64_t e = columns.column_begin[i]; e < columns.column_begin[i + 1]; ++e)
+                add_light(sums[columns.row[e]], columns.value[e], change);
+        }
+    }
+
+    /// The columns of the base know nothing of what actors cover.
+    void cover(std::span<const CoveredLine> covered, DoubleLanes& sum) const {
+        for (const CoveredLine& line : covered)
+            add_light(sum, line.value, change_[line.now].v - change_[line.base].v);
+    }
+
+    ResidualState& state_;
+    const ResidualProblem& problem_;
+    std::vector<DoubleLanes> change_;  // of B, by patch; 0 but while it is sent
+};
+
+void check(const ResidualProblem& problem, std::size_t state_size) {
+    const std::size_t patches = problem.matrix.rows();
+    const auto require = [&](std::size_t size, const char* field) {
+        if (size != patches) throw Error(ErrorKind::invalid_input, field, "needs one value a patch");
+    };
+    require(problem.area.size(), "area");
+    require(problem.emission.size(), "emission");
+    require(problem.reflectance.size(), "reflectance");
+    require(problem.external_irradiance.size(), "external irradiance");
+    require(state_size, "state");
+}
+
+void gather_all(ResidualState& state, const ResidualProblem& problem, const Context& context) {
+    context.for_chunks(problem.matrix.rows(), rows_per_chunk / 4, [&](std::size_t first, std::size_t last) {
+        gather_rows(state, problem, first, last);
+    });
+}
+
+}  // namespace
+
+ResidualState make_residual_state(const ResidualProblem& problem, const Context& context) {
+    const std::size_t patches = problem.matrix.rows();
+    check(problem, patches);
+    ResidualState state;
+    state.radiosity.resize(patches + 1);
+    for (std::size_t i = 0; i < patches; ++i) state.radiosity[i] = to_lanes(problem.emission[i]);
+    state.by_sight.resize(patches);
+    state.by_light.resize(patches);
+    state.irradiance.assign(patches, Rgb(0));
+    state.residual.assign(patches, Rgb(0));
+    gather_all(state, problem, context);
+    return state;
+}
+
+void follow(ResidualState& state, const ResidualProblem& problem, const RowChanges& changes,
+            const Context& context) {
+    check(problem, state.irradiance.size());
+    const auto apply = [&](std::span<const RowChange> list, std::vector<DoubleLanes>& sums) {
+        for (const RowChange& change : list)
+            add_light(sums[change.row], change.value,
+                      to_double(state.radiosity[change.to]).v - to_double(state.radiosity[change.from]).v);
+    };
+    apply(changes.sight, state.by_sight);
+    apply(changes.light, state.by_light);
+    const std::size_t share = problem.matrix.rows() / refresh_period + 1;
+    const std::size_t first = std::min(state.next_refresh, problem.matrix.rows());
+    const std::size_t last = std::min(first + share, problem.matrix.rows());
+    context.for_chunks(last - first, share, [&](std::size_t begin, std::size_t end) {
+        gather_rows(state, problem, first + begin, first + end);
+    });
+    state.next_refresh = last < problem.matrix.rows() ? last : 0;
+}
+
+Certificate step(ResidualState& state, const ResidualProblem& problem, const ResidualConfig& config,
+                 const Context& context) {
+    check(problem, state.irradiance.size());
+    if (!(config.asked_error > 0)) throw Error(ErrorKind::invalid_input, "asked error", "must be above 0");
+    const double gain = gain_of(problem);
+    if (!(gain < 1))
+        throw Error(ErrorKind::cannot_converge, "reflectance",
+                    "a patch reflects " + std::to_string(gain) +
+                        " of the light around it; at 1 or more the light would grow without bound");
+    state.status = ResidualStatus::running;
+    gather_whole(state, problem, context);
+    Surveyor surveyor(state, problem);
+    Pusher pusher(state, problem);
+    const std::uint64_t pushes_before = state.pushes;
+    for (;;) {
+        const Survey survey = surveyor.look(gain, config.asked_error, context);
+        if (survey.certificate.error_bound <= config.asked_error)
+            state.status = ResidualStatus::converged;
+        else if (survey.only_rounding)
+            state.status = ResidualStatus::exhausted;
+        if (state.status != ResidualStatus::running || state.pushes - pushes_before >= config.max_pushes)
+            return survey.certificate;
+        context.check_stop();
+        if (!pusher.push(survey, config, context)) {
+            state.status = ResidualStatus::exhausted;
+            return survey.certificate;
+        }
+    }
+}
+
+}  // namespace afterglow

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "solver/base/context.h"
+#include "solver/base/math.h"
+#include "solver/formfactor/layered_matrix.h"
+#include "solver/radiosity/certificate.h"
+#include "solver/radiosity/exchange.h"
+
+namespace afterglow {
+
+/// What is to be solved at one time: B = E + ρ (F B + H0), with F in layers. The spans and the matrix belong
+/// to the caller; all have one element a patch, with the ranges of RadiosityProblem.
+struct ResidualProblem {
+    const LayeredMatrix& matrix;               ///< F as lines show it now
+    std::span<const float> area;               ///< A, m²
+    std::span<const Rgb> emission;             ///< E, W/m²
+    std::span<const Rgb> reflectance;          ///< ρ
+    std::span<const Rgb> external_irradiance;  ///< H0, W/m²
+};
+
+/// How far and how to solve.
+struct ResidualConfig {
+    double asked_error = 0.02;  ///< certificate (error_bound) at which the solution is finished, above 0
+    /// Patches whose residual exceeds this share of the largest one are pushed together, in (0, 1].
+    double push_share = 0.5;
+    /// Nothing is pushed whose residual is below this share of what would be good enough, in (0, 1].
+    double least_share = 0.5;
+    /// A round whose columns hold at least this share of all entries is made as a sweep: all patches are
+    /// pushed, and the rows gather them in parallel.
+    double sweep_share = 0.25;
+    /// Pushes after which a call returns. The round in hand is completed, and a call makes at least one: what
+    /// is computed does not depend on how pushes are divided over calls.
+    std::uint64_t max_pushes = std::numeric_limits<std::uint64_t>::max();
+};
+
+/// Where the solution stands.
+enum class ResidualStatus {
+    running,    ///< more pushes would help
+    converged,  ///< the certificate is met
+    exhausted,  ///< what is left is less than single precision can tell
+};
+
+/// A solution that follows its problem: radiosity, and what each row gathers of it. The residual
+/// r = E + ρ (F B + H0) − B follows from them row by row, for whatever E, ρ and H0 there are.
+struct ResidualState {
+    std::vector<Lanes> radiosity;       ///< B, W/m², by patch, and 0 for LayeredMatrix::nowhere
+    std::vector<DoubleLanes> by_sight;  ///< Σ of the sight layer times B, by row, unscaled
+    std::vector<DoubleLanes> by_light;  ///< likewise of the light layer
+    std::vector<DoubleLanes> by_whole;  ///< by whole row, of this moment
+    std::vector<Rgb> irradiance;        ///< H, W/m², by patch: what is shown is E + ρH
+    std::vector<Rgb> residual;          ///< r, W/m², by patch
+    std::uint64_t pushes = 0;           ///< patches whose radiosity was changed, over all rounds
+    std::uint64_t rounds = 0;           ///< of them, or sweeps
+    std::uint64_t sweeps = 0;
+    std::size_t next_refresh = 0;  ///< the row from which on sums are computed afresh in the next frame
+    ResidualStatus status = ResidualStatus::running;
+};
+
+/// Starts with what shines by itself, B = E, and nothing reflected.
+/// Errors: invalid_input where sizes do not agree; cancelled.
+ResidualState make_residual_state(const ResidualProblem& problem, const Context& context);
+
+/// Takes over what changed in the layers since the state's sums were right, and computes a share of all sums
+/// afresh, so that rounding is forgotten after 64 calls at the latest. `problem.matrix` is as `show` left it.
+void follow(ResidualState& state, const ResidualProblem& problem, const RowChanges& changes,
+            const Context& context);
+
+/// Pushes the largest residuals, signed, until the certificate is met, only rounding is left, or
+/// `config.max_pushes` more were made. E, ρ and H0 may differ from those of the call before. Returns the
+/// certificate of E + ρH: its error is at most g times that of B, and the residual of B is computed, not
+/// estimated, with the rounding of sums added. Same bits for any number of threads and any division into
+/// calls. Source: Southwell's relaxation; Chen 1990, whose ± energy it generalises. Errors: cannot_converge
+/// where the gain is 1 or more; invalid_input; cancelled leaves a consistent state.
+Certificate step(ResidualState& state, const ResidualProblem& problem, const ResidualConfig& config,
+                 const Context& context);
+
+}  // namespace afterglow
