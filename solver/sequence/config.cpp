@@ -13,8 +13,8 @@ constexpr std::array<Method, 3> all_methods{{
     {"full", Visibility::retrace, Solution::progressive, "everything traced and solved anew at every frame"},
     {"baum86", Visibility::back_buffer, Solution::progressive,
      "static background kept, actors traced, solved anew"},
-    {"events", Visibility::events, Solution::progressive,
-     "what lines come to see is found ahead, solved anew"},
+    {"events", Visibility::events, Solution::residual,
+     "what lines come to see is found ahead, and only what changes is solved"},
 }};
 
 template <class Value>
@@ -28,7 +28,10 @@ constexpr std::array<Named<Visibility>, 4> visibilities{{
     {"temporal-graph", Visibility::temporal_graph},
     {"events", Visibility::events},
 }};
-constexpr std::array<Named<Solution>, 1> solutions{{{"progressive", Solution::progressive}}};
+constexpr std::array<Named<Solution>, 2> solutions{{
+    {"progressive", Solution::progressive},
+    {"residual", Solution::residual},
+}};
 constexpr std::array<Named<Quality>, 3> qualities{{
     {"draft", Quality::draft},
     {"preview", Quality::preview},

@@ -20,6 +20,7 @@ enum class Visibility {
 /// How each frame's light is solved.
 enum class Solution {
     progressive,  ///< Cohen et al. 1988: shooting, cold every frame
+    residual,     ///< the last frame's light, corrected where it no longer balances
 };
 
 /// How fine the patches, lines and samples are, in three steps; see QualityLevel.

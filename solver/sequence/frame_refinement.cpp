@@ -1,5 +1,7 @@
 #include "solver/sequence/frame_refinement.h"
 
+#include <utility>
+
 #include "solver/base/stopwatch.h"
 #include "solver/formfactor/two_halves.h"
 #include "solver/image/line_noise.h"
@@ -26,7 +28,7 @@ FrameRefinement::FrameRefinement(SequenceState::Parts& parts, int frame)
 void FrameRefinement::look(Index directions, VisibilityStrategy& strategy, const Context& context) {
     if (directions <= directions_) return;
     std::uint64_t static_rays = 0;
-    if (strategy.needs_background())
+    if (strategy.needs_background() || parts_.config.solution == Solution::residual)
         static_rays = advance_static_pass(parts_, directions, context.part(0, 0.4));
     const Stopwatch watch;
     const Milliseconds ahead_before = total(strategy.work_ahead());
@@ -35,20 +37,23 @@ void FrameRefinement::look(Index directions, VisibilityStrategy& strategy, const
                                                              parts_.visible, context);
     directions_ = directions;
     statistics_.visibility += watch.elapsed() - (total(strategy.work_ahead()) - ahead_before);
-    compile(context);
 }
 
 void FrameRefinement::compile(const Context& context) {
-    const Stopwatch watch;
+    if (compiled_ == directions_) return;
     const SeenLines seen{parts_.visible.patch, directions_, parts_.visible.light_contribution};
     factors_ =
         compile_rows(parts_.mesh, *parts_.sight, *parts_.light, parts_.lamps, parts_.caster, seen, context);
     columns_ = columns_of(factors_.matrix, context);
-    from_lights_ = light_irradiance(lights_, parts_.mesh, *parts_.sight, parts_.caster, factors_,
+    compiled_ = directions_;
+}
+
+void FrameRefinement::light_from_outside(std::span<const float> valid_share, std::span<const float> sky,
+                                         const Context& context) {
+    from_lights_ = light_irradiance(lights_, parts_.mesh, *parts_.sight, parts_.caster, valid_share,
                                     statistics_.rays_traced, context);
-    outside_ = sky_irradiance(parts_.world, factors_);
+    outside_ = sky_irradiance(parts_.world, sky);
     for (std::size_t p = 0; p < outside_.size(); ++p) outside_[p] += from_lights_[p];
-    statistics_.visibility += watch.elapsed();
 }
 
 RadiosityProblem FrameRefinement::problem() const {
@@ -56,6 +61,11 @@ RadiosityProblem FrameRefinement::problem() const {
 }
 
 void FrameRefinement::solve(double asked_error, const Context& context) {
+    const Stopwatch compiling;
+    compile(context);
+    light_from_outside(factors_.valid_share, factors_.sky, context);
+    statistics_.visibility += compiling.elapsed();
+
     const Stopwatch watch;
     context.report(0.6, "solving the light");
     ProgressiveConfig config;
@@ -65,28 +75,79 @@ void FrameRefinement::solve(double asked_error, const Context& context) {
     do {
         certificate_ = step(*light_, problem(), columns_, config, context.part(0.6, 0.8));
     } while (light_->status == ProgressiveStatus::running);
-    statistics_.shots += light_->shots;
+    irradiance_ = light_->irradiance;
+    from_lamps_ = irradiance_from_lamps();
+    valid_share_ = factors_.valid_share;
+    exhausted_ = light_->status == ProgressiveStatus::exhausted;
+    note_solution(light_->shots);
+    statistics_.solve += watch.elapsed();
+}
+
+void FrameRefinement::follow(double asked_error, const Context& context) {
+    const Stopwatch looking;
+    // Left for good only once all is done: a stop in the middle leaves nothing half brought up to date.
+    std::optional<KeptLight> kept = std::exchange(parts_.kept_light, std::nullopt);
+    auto listed = parts_.strategy->take_changes();
+    if (!kept) {
+        kept.emplace(KeptLight{make_layered_matrix(parts_.layers(), context), std::nullopt});
+        listed.reset();
+    }
+    const RowChanges changes = listed ? show(kept->matrix, parts_.layers(), parts_.visible, *listed, context)
+                                      : show(kept->matrix, parts_.layers(), parts_.visible, context);
+    light_from_outside(kept->matrix.valid_share, kept->matrix.sky, context);
+    statistics_.visibility += looking.elapsed();
+    statistics_.visibility_changes = changes.lines;
+
+    const Stopwatch watch;
+    context.report(0.6, "solving the light");
+    const ResidualProblem problem{kept->matrix, parts_.mesh.area_m2, emission_, reflectance_, outside_};
+    if (kept->state)
+        afterglow::follow(*kept->state, problem, changes, context);
+    else
+        kept->state = make_residual_state(problem, context);
+    ResidualConfig config;
+    config.asked_error = asked_error;
+    const std::uint64_t pushes_before = kept->state->pushes;
+    do {
+        certificate_ = step(*kept->state, problem, config, context.part(0.6, 0.8));
+    } while (kept->state->status == ResidualStatus::running);
+    irradiance_ = kept->state->irradiance;
+    from_lamps_ = lamp_irradiance(kept->matrix, parts_.lamps, emission_, context);
+    valid_share_ = kept->matrix.valid_share;
+    exhausted_ = kept->state->status == ResidualStatus::exhausted;
+    note_solution(kept->state->pushes - pushes_before);
+    statistics_.solve += watch.elapsed();
+    parts_.kept_light = std::move(kept);
+}
+
+void FrameRefinement::note_solution(std::uint64_t shots) {
+    statistics_.shots += shots;
     statistics_.residual = certificate_.residual;
     statistics_.error_bound = certificate_.error_bound;
     statistics_.active_patches = parts_.mesh.size();
-    statistics_.solve += watch.elapsed();
+}
+
+/// Of the compiled rows.
+std::vector<Rgb> FrameRefinement::irradiance_from_lamps() const {
+    std::vector<Rgb> irradiance(parts_.mesh.size(), Rgb(0));
+    for (const Index lamp : parts_.lamps.patches)
+        for (std::uint64_t k = columns_.column_begin[lamp]; k < columns_.column_begin[lamp + 1]; ++k)
+            irradiance[columns_.row[k]] += columns_.value[k] * emission_[lamp];
+    return irradiance;
 }
 
 /// The part of the solution that a picture does not take point by point.
 std::vector<Rgb> FrameRefinement::indirect_irradiance() const {
-    std::vector<Rgb> indirect = light_->irradiance;
-    for (std::size_t p = 0; p < indirect.size(); ++p) indirect[p] -= from_lights_[p];
-    for (const Index lamp : parts_.lamps.patches)
-        for (std::uint64_t k = columns_.column_begin[lamp]; k < columns_.column_begin[lamp + 1]; ++k)
-            indirect[columns_.row[k]] -= columns_.value[k] * emission_[lamp];
-    // Both are sums of the same terms in another order: what rounding leaves below zero is zero.
-    for (Rgb& value : indirect) value = glm::max(value, Rgb(0));
+    std::vector<Rgb> indirect = irradiance_;
+    // All are sums of the same terms in another order: what rounding leaves below zero is zero.
+    for (std::size_t p = 0; p < indirect.size(); ++p)
+        indirect[p] = glm::max(indirect[p] - from_lights_[p] - from_lamps_[p], Rgb(0));
     return indirect;
 }
 
 /// Of all patches, W/m².
 std::vector<Rgb> FrameRefinement::radiosity() const {
-    std::vector<Rgb> out = light_->irradiance;
+    std::vector<Rgb> out = irradiance_;
     for (std::size_t p = 0; p < out.size(); ++p) out[p] = emission_[p] + reflectance_[p] * out[p];
     return out;
 }
@@ -104,7 +165,7 @@ LitWorld FrameRefinement::lit_by(std::span<const Rgb> irradiance) const {
     lit.caster = &parts_.caster;
     lit.materials = materials_;
     lit.irradiance = irradiance;
-    lit.confidence = factors_.valid_share;
+    lit.confidence = valid_share_;
     lit.lift_m = parts_.sight->lift_m();
     return lit;
 }
@@ -136,6 +197,7 @@ Picture FrameRefinement::final_picture(const Context& context) {
 void FrameRefinement::estimate_error(const Picture& final_picture, const Context& context) {
     const Stopwatch watch;
     context.report(0.9, "estimating the picture's error");
+    compile(context);
     const SeenLines seen{parts_.visible.patch, directions_, parts_.visible.light_contribution};
     const auto differences = half_differences(*parts_.sight, parts_.lamps, seen, factors_, radiosity(),
                                               pi * parts_.world.background, context);

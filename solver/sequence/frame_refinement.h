@@ -20,6 +20,8 @@ class FrameRefinement {
     void look(Index directions, VisibilityStrategy& strategy, const Context& context);
     /// Solves, from nothing, until the certificate is met.
     void solve(double asked_error, const Context& context);
+    /// Solves from what the last frame left, likewise. All lines must have been looked along.
+    void follow(double asked_error, const Context& context);
     /// What is solved so far, with an estimate of the light still on its way.
     Picture preliminary_picture(int width, int height, const Context& context);
     Picture final_picture(const Context& context);
@@ -27,13 +29,17 @@ class FrameRefinement {
     void estimate_error(const Picture& final_picture, const Context& context);
 
     [[nodiscard]] const Certificate& certificate() const { return certificate_; }
-    /// Of the latest `solve`.
-    [[nodiscard]] ProgressiveStatus status() const { return light_->status; }
+    /// Whether single precision was too coarse for the latest solution's asked error.
+    [[nodiscard]] bool exhausted() const { return exhausted_; }
     [[nodiscard]] const FrameStatistics& statistics() const { return statistics_; }
 
   private:
     void compile(const Context& context);
+    void light_from_outside(std::span<const float> valid_share, std::span<const float> sky,
+                            const Context& context);
+    void note_solution(std::uint64_t shots);
     [[nodiscard]] RadiosityProblem problem() const;
+    [[nodiscard]] std::vector<Rgb> irradiance_from_lamps() const;
     [[nodiscard]] std::vector<Rgb> indirect_irradiance() const;
     [[nodiscard]] std::vector<Rgb> radiosity() const;
     [[nodiscard]] DirectLight direct_light() const;
@@ -50,9 +56,14 @@ class FrameRefinement {
     std::vector<Rgb> from_lights_;  ///< irradiance by the lights without a surface
     std::vector<Rgb> outside_;      ///< and by the sky
     Index directions_ = 0;
+    Index compiled_ = 0;  ///< directions that the rows were made from
     FormFactors factors_;
     FormFactorColumns columns_;
     std::optional<ProgressiveState> light_;
+    std::vector<Rgb> irradiance_;     ///< of the latest solution
+    std::vector<Rgb> from_lamps_;     ///< the part of it that comes from lamps straight
+    std::vector<float> valid_share_;  ///< by patch, of its lines
+    bool exhausted_ = false;
     Certificate certificate_;
     FrameStatistics statistics_;
 };

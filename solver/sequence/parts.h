@@ -4,13 +4,19 @@
 #include <optional>
 
 #include "solver/base/hash.h"
-#include "solver/formfactor/rows.h"
 #include "solver/image/picture.h"
 #include "solver/mesh/interpolation.h"
+#include "solver/radiosity/residual.h"
 #include "solver/sequence/sequence.h"
 #include "solver/visibility/strategy.h"
 
 namespace afterglow {
+
+/// The matrix of the frame shown last and its light, kept for the next one.
+struct KeptLight {
+    LayeredMatrix matrix;
+    std::optional<ResidualState> state;
+};
 
 /// What a sequence keeps from frame to frame. Parts point at each other, so they stay where they are: behind
 /// one pointer.
@@ -29,8 +35,11 @@ struct SequenceState::Parts {
     Hash128 background_key;
     std::unique_ptr<VisibilityStrategy> strategy;
     VisibleLines visible;
-    std::vector<Index> visible_before;  ///< sight lines of the frame before, empty at first
-    std::optional<float> exposure_ev;   ///< set once, for all frames
+    /// Sight lines of the frame before whose changes are still to be counted; empty at first.
+    std::vector<Index> visible_before;
+    std::uint64_t frames_shown = 0;
+    std::optional<KeptLight> kept_light;  ///< of a solution that keeps it
+    std::optional<float> exposure_ev;     ///< set once, for all frames
     SequenceStatistics statistics;
     Warnings warnings;
     bool warned_of_exhaustion = false;  ///< one such warning a job is enough
@@ -45,6 +54,7 @@ struct SequenceState::Parts {
     [[nodiscard]] LineScene lines(int frame) const {
         return {mesh, *sight, *light, caster, background, frame};
     }
+    [[nodiscard]] LayerScene layers() const { return {mesh, *sight, *light, lamps, caster, background}; }
 };
 
 }  // namespace afterglow

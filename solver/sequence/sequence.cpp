@@ -95,14 +95,15 @@ class Publisher {
 std::vector<Index> preliminary_looks(const SequenceState::Parts& parts) {
     const Index all = parts.sight->lines_per_patch();
     std::vector<Index> looks;
-    if (parts.visible_before.empty()) looks = {std::max(all / 16, Index{4}), std::max(all / 4, Index{8})};
-    looks.push_back(all);
+    if (parts.frames_shown == 0) looks = {std::max(all / 16, Index{4}), std::max(all / 4, Index{8})};
+    // What follows the last frame is there before a preliminary picture could be.
+    if (!parts.kept_light) looks.push_back(all);
     return looks;
 }
 
 /// Says once in a job that the asked error is out of reach, and how near its frames came.
 void warn_of_exhaustion(SequenceState::Parts& parts, const FrameRefinement& frame, int frame_number) {
-    if (frame.status() != ProgressiveStatus::exhausted || parts.warned_of_exhaustion) return;
+    if (!frame.exhausted() || parts.warned_of_exhaustion) return;
     parts.warned_of_exhaustion = true;
     std::ostringstream bound;
     bound << std::setprecision(2) << frame.certificate().error_bound;
@@ -119,11 +120,25 @@ void warn_of_fine_error(SequenceState::Parts& parts) {
                                            " only the solution's certificate follows it for certain"});
 }
 
-std::uint64_t count_changes(const std::vector<Index>& now, const std::vector<Index>& before) {
-    if (before.empty()) return 0;
+/// Changes since the frame before of those lines that the solution has not counted, whose targets it notes.
+std::uint64_t count_changes(SequenceState::Parts& parts) {
+    const bool counted = parts.kept_light && !parts.kept_light->matrix.ledger.has_moving_lamps;
+    const std::size_t first =
+        counted ? std::size_t{parts.mesh.static_size()} * parts.sight->lines_per_patch() : 0;
+    const std::span now = std::span(parts.visible.patch).subspan(first);
     std::uint64_t changes = 0;
-    for (std::size_t i = 0; i < now.size(); ++i) changes += now[i] != before[i] ? 1U : 0U;
+    if (!parts.visible_before.empty())
+        for (std::size_t i = 0; i < now.size(); ++i) changes += now[i] != parts.visible_before[i] ? 1U : 0U;
+    parts.visible_before.assign(now.begin(), now.end());
     return changes;
+}
+
+void solve_finally(const SequenceState::Parts& parts, FrameRefinement& frame, const Context& context) {
+    const double asked_error = level_of(parts.config).certificate;
+    if (parts.config.solution == Solution::residual)
+        frame.follow(asked_error, context);
+    else
+        frame.solve(asked_error, context);
 }
 
 }  // namespace
@@ -176,7 +191,7 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     }
     const Context last = context.part(0.6, 1);
     frame.look(all, *parts.strategy, last);
-    frame.solve(level_of(parts.config).certificate, last);
+    solve_finally(parts, frame, last);
     warn_of_exhaustion(parts, frame, frame_number);
     Picture picture = frame.final_picture(last);
     if (parts.config.estimate == Estimate::probes) frame.estimate_error(picture, last);
@@ -184,8 +199,8 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
 
     FrameStatistics statistics = frame.statistics();
     statistics.frame = frame_number;
-    statistics.visibility_changes = count_changes(parts.visible.patch, parts.visible_before);
-    parts.visible_before = parts.visible.patch;
+    statistics.visibility_changes += count_changes(parts);
+    ++parts.frames_shown;
     const auto ahead = parts.strategy->work_ahead();
     parts.statistics.work_ahead.assign(ahead.begin(), ahead.end());
     statistics.total = watch.elapsed() - (parts.statistics.outside_frames() - outside_before);

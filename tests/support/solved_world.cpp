@@ -81,8 +81,8 @@ void SolvedWorld::solve(double time_s) {
     look(time_s);
     const Context context(1);
     std::uint64_t rays = 0;
-    from_lights = light_irradiance(lights, mesh, sight, caster, factors, rays, context);
-    external = sky_irradiance(world, factors);
+    from_lights = light_irradiance(lights, mesh, sight, caster, factors.valid_share, rays, context);
+    external = sky_irradiance(world, factors.sky);
     for (std::size_t p = 0; p < external.size(); ++p) external[p] += from_lights[p];
     ProgressiveConfig progressive;
     progressive.asked_error = config.asked_error;

@@ -65,9 +65,9 @@ TEST(OutsideLight, BackgroundAndShadowedLight) {
     const FormFactors factors = compile_rows(lined.mesh, lined.sight, lined.light, lined.lamps, lined.caster,
                                              {visible.patch, 16, {}}, Context(1));
     std::uint64_t rays = 0;
-    const auto sky = sky_irradiance(lined.world, factors);
+    const auto sky = sky_irradiance(lined.world, factors.sky);
     const auto lit = light_irradiance(lights_at(lined.world, 0), lined.mesh, lined.sight, lined.caster,
-                                      factors, rays, Context(1));
+                                      factors.valid_share, rays, Context(1));
     ASSERT_EQ(sky.size(), 2U);
     ASSERT_EQ(lit.size(), 2U);
     EXPECT_NEAR(sky[0].x, pi * 0.5, 1e-5);
