@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "solver/base/error.h"
+#include "solver/formfactor/row_counter.h"
 
 namespace afterglow {
 
@@ -30,30 +31,13 @@ Index& tallied(LineTally& tally, Index target, bool counts) {
     return counts ? tally.on_others : tally.on_lamps;
 }
 
-/// Collects rows in which a column may be named many times.
-class Counter {
-  public:
-    explicit Counter(std::size_t columns) : sum_(columns, 0) {}
-
-    void add(Index column, float value) {
-        if (sum_[column] == 0) touched_.push_back(column);
-        sum_[column] += value;
-    }
-    void end_row(FormFactorMatrix& matrix) {
-        std::sort(touched_.begin(), touched_.end());
-        for (const Index column : touched_) {
-            matrix.column.push_back(column);
-            matrix.value.push_back(sum_[column]);
-            sum_[column] = 0;
-        }
-        touched_.clear();
-        matrix.row_begin.push_back(matrix.column.size());
-    }
-
-  private:
-    std::vector<float> sum_;
-    std::vector<Index> touched_;
-};
+void end_row(RowCounter& counter, FormFactorMatrix& matrix) {
+    counter.end_row([&](Index column, float value) {
+        matrix.column.push_back(column);
+        matrix.value.push_back(value);
+    });
+    matrix.row_begin.push_back(matrix.column.size());
+}
 
 /// Appends the rows of one matrix to another.
 void append(FormFactorMatrix& matrix, const FormFactorMatrix& rows) {
@@ -69,7 +53,7 @@ struct BaseRows {
     FormFactorMatrix sight, light;
 };
 
-void count_block(LayeredMatrix& matrix, const LayerScene& scene, std::size_t b, Counter& counter,
+void count_block(LayeredMatrix& matrix, const LayerScene& scene, std::size_t b, RowCounter& counter,
                  BaseRows& rows) {
     const PatchBlock& block = scene.sight.blocks()[b];
     for (Index lane = 0; lane < block.count; ++lane) {
@@ -81,7 +65,7 @@ void count_block(LayeredMatrix& matrix, const LayerScene& scene, std::size_t b, 
             ++tallied(tally, target, column != matrix.nowhere());
             if (column != matrix.nowhere()) counter.add(column, 1);
         }
-        counter.end_row(rows.sight);
+        end_row(counter, rows.sight);
         for (Index k = 0; k < scene.light.lines_per_patch(); ++k) {
             const float value = scene.background.light_contribution[scene.light.line(block, k, lane)];
             const Index lamp_patch = scene.light.lamp_patch(b, k);
@@ -89,7 +73,7 @@ void count_block(LayeredMatrix& matrix, const LayerScene& scene, std::size_t b, 
             counter.add(lamp_patch, value);
             matrix.ledger.from_lamps[row] += static_cast<double>(value);
         }
-        counter.end_row(rows.light);
+        end_row(counter, rows.light);
     }
 }
 
@@ -114,7 +98,7 @@ void count_base(LayeredMatrix& matrix, const LayerScene& scene, const Context& c
     const std::size_t blocks = scene.sight.static_blocks();
     std::vector<BaseRows> parts((blocks + blocks_per_chunk - 1) / blocks_per_chunk);
     context.for_chunks(blocks, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
-        Counter counter(matrix.rows());
+        RowCounter counter(matrix.rows());
         for (std::size_t b = begin; b < end; ++b)
             count_block(matrix, scene, b, counter, parts[begin / blocks_per_chunk]);
     });
@@ -132,7 +116,7 @@ void scale_rows(LayeredMatrix& matrix, const LayerScene& scene) {
     for (Index row = 0; row < layered; ++row) {
         const LineTally& tally = matrix.ledger.tally[row];
         double lit = matrix.ledger.from_lamps[row];
-        for (const CoveredLine& line : matrix.light.covered[row]) lit -= static_cast<double>(line.value);
+        for (const CoveredEntry& entry : matrix.light.covered[row]) lit -= static_cast<double>(entry.value);
         const Index valid = tally.valid(), others = tally.outside + tally.on_others;
         matrix.valid_share[row] = static_cast<float>(valid) / lines;
         matrix.sight.scale[row] = matrix.light.scale[row] = matrix.sky[row] = 0;
@@ -169,22 +153,6 @@ void compile_whole(LayeredMatrix& matrix, const LayerScene& scene, const Visible
     matrix.whole = std::move(rows.matrix);
 }
 
-/// Puts a line where it belongs among a row's covered lines, or takes it away where its background shows.
-/// Returns the column in which it counted before.
-Index place_line(std::vector<CoveredLine>& covered, const CoveredLine& line, bool is_covered) {
-    const auto at = std::lower_bound(covered.begin(), covered.end(), line.line,
-                                     [](const CoveredLine& a, Index b) { return a.line < b; });
-    const bool known = at != covered.end() && at->line == line.line;
-    const Index before = known ? at->now : line.base;
-    if (known && !is_covered)
-        covered.erase(at);
-    else if (known)
-        *at = line;
-    else if (is_covered)
-        covered.insert(at, line);
-    return before;
-}
-
 /// The static patch that a line belongs to, by its number. Static blocks follow each other, all full but the
 /// last.
 Index row_of(const LayerScene& scene, std::size_t line, Index lines_per_patch) {
@@ -194,44 +162,106 @@ Index row_of(const LayerScene& scene, std::size_t line, Index lines_per_patch) {
     return first + static_cast<Index>((line - std::size_t{first} * lines_per_patch) % count);
 }
 
-/// One line at a time, from what it showed last to what it shows.
+/// Brings the rows of consecutive blocks from what they showed last to what their lines show.
 class Layers {
   public:
     Layers(LayeredMatrix& matrix, const LayerScene& scene, RowChanges& changes)
-        : matrix_(matrix), scene_(scene), changes_(changes) {}
-
-    void show_sight(const LineChange& change) {
-        const Index row = row_of(scene_, change.line, scene_.sight.lines_per_patch());
-        const Index background = scene_.background.background.patch[change.line];
-        const CoveredLine line{change.line, column_of(matrix_, scene_.lamps, row, background),
-                               column_of(matrix_, scene_.lamps, row, change.to), change.to, 1};
-        const Index before = place_line(matrix_.sight.covered[row], line, change.to != background);
-        LineTally& tally = matrix_.ledger.tally[row];
-        --tallied(tally, change.from, before != matrix_.nowhere());
-        ++tallied(tally, change.to, line.now != matrix_.nowhere());
-        if (before != line.now) changes_.sight.push_back({row, before, line.now, 1});
-        ++changes_.lines;
+        : matrix_(matrix), scene_(scene), changes_(changes) {
+        changes_.sight.clear();
+        changes_.light.clear();
+        changes_.lines = 0;
     }
 
-    void show_light(Index number, float contribution) {
-        const float value = scene_.background.light_contribution[number];
+    /// Sight lines of one block, those of a row by number and time.
+    void show_sight(const PatchBlock& block, std::span<const LineChange> changes) {
+        const std::size_t first = scene_.sight.line(block, 0, 0);
+        for (const LineChange& change : changes)
+            by_lane_[(change.line - first) % block.count].push_back(change);
+        for (Index lane = 0; lane < block.count; ++lane) {
+            if (!by_lane_[lane].empty()) show_row(block.first + lane, by_lane_[lane]);
+            by_lane_[lane].clear();
+        }
+        changes_.lines += changes.size();
+    }
+
+    void show_light(Index line, float contribution) {
+        const float value = scene_.background.light_contribution[line];
         const Index lines = scene_.light.lines_per_patch();
-        const Index row = row_of(scene_, number, lines);
+        const Index row = row_of(scene_, line, lines);
         const PatchBlock& block = scene_.sight.blocks()[row / block_size];
-        const Index k = (number - static_cast<Index>(scene_.light.line(block, 0, 0))) / block.count;
+        const Index k = (line - static_cast<Index>(scene_.light.line(block, 0, 0))) / block.count;
         const Index lamp_patch = scene_.light.lamp_patch(row / block_size, k);
         if (!(value > 0) || column_of(matrix_, scene_.lamps, row, lamp_patch) != matrix_.nowhere()) return;
-        const bool is_covered = !(contribution > 0);
-        const CoveredLine line{number, lamp_patch, is_covered ? matrix_.nowhere() : lamp_patch, no_index,
-                               value};
-        const Index before = place_line(matrix_.light.covered[row], line, is_covered);
-        if (before != line.now) changes_.light.push_back({row, before, line.now, value});
+        std::vector<CoveredLine>& dark = matrix_.light.lines[row];
+        std::vector<CoveredEntry>& entries = matrix_.light.covered[row];
+        const auto at = std::lower_bound(dark.begin(), dark.end(), line,
+                                         [](const CoveredLine& a, Index b) { return a.line < b; });
+        const bool was_covered = at != dark.end() && at->line == line, is_covered = !(contribution > 0);
+        if (was_covered == is_covered) return;
+        const Index nowhere = matrix_.nowhere();
+        if (is_covered) {
+            entries.insert(entries.begin() + (at - dark.begin()), {lamp_patch, nowhere, value});
+            dark.insert(at, {line, lamp_patch, sees_inside});
+            changes_.light.push_back({row, lamp_patch, nowhere, value});
+        } else {
+            entries.erase(entries.begin() + (at - dark.begin()));
+            dark.erase(at);
+            changes_.light.push_back({row, nowhere, lamp_patch, value});
+        }
     }
 
   private:
+    /// Merges what changed into a row's covered lines.
+    void show_row(Index row, std::span<const LineChange> changes) {
+        std::vector<CoveredLine>& lines = matrix_.sight.lines[row];
+        std::vector<CoveredEntry>& entries = matrix_.sight.covered[row];
+        lines_.clear();
+        entries_.clear();
+        std::size_t kept = 0;  // of the old ones, so many have been dealt with
+        const auto keep_up_to = [&](std::size_t end) {
+            lines_.insert(lines_.end(), lines.begin() + static_cast<std::ptrdiff_t>(kept),
+                          lines.begin() + static_cast<std::ptrdiff_t>(end));
+            entries_.insert(entries_.end(), entries.begin() + static_cast<std::ptrdiff_t>(kept),
+                            entries.begin() + static_cast<std::ptrdiff_t>(end));
+            kept = end;
+        };
+        for (std::size_t c = 0; c < changes.size();) {
+            LineChange change = changes[c];
+            for (++c; c < changes.size() && changes[c].line == change.line; ++c) change.to = changes[c].to;
+            std::size_t place = kept;
+            while (place < lines.size() && lines[place].line < change.line) ++place;
+            keep_up_to(place);
+            const bool known = place < lines.size() && lines[place].line == change.line;
+            // An open line comes from its background, so that need not be looked up.
+            const Index background = known ? lines[place].background : change.from;
+            const Index base =
+                known ? entries[place].base : column_of(matrix_, scene_.lamps, row, background);
+            note(row, change, known ? entries[place].now : base, {change.line, background, change.to}, base);
+            if (known) ++kept;
+        }
+        keep_up_to(lines.size());
+        lines.assign(lines_.begin(), lines_.end());
+        entries.assign(entries_.begin(), entries_.end());
+    }
+
+    /// Puts one line where it belongs in tally, layer and list.
+    void note(Index row, const LineChange& change, Index before, const CoveredLine& line, Index base) {
+        const Index now = column_of(matrix_, scene_.lamps, row, change.to);
+        LineTally& tally = matrix_.ledger.tally[row];
+        --tallied(tally, change.from, before != matrix_.nowhere());
+        ++tallied(tally, change.to, now != matrix_.nowhere());
+        if (before != now) changes_.sight.push_back({row, before, now, 1});
+        if (change.to == line.background) return;
+        lines_.push_back(line);
+        entries_.push_back({base, now, 1});
+    }
+
     LayeredMatrix& matrix_;
     const LayerScene& scene_;
     RowChanges& changes_;
+    std::array<std::vector<LineChange>, block_size> by_lane_;
+    std::vector<CoveredLine> lines_;  // of the row in hand
+    std::vector<CoveredEntry> entries_;
 };
 
 /// Looks for what one block's lines show otherwise than the layers do.
@@ -282,7 +312,7 @@ class Comparison {
     using Cursors = std::array<Cursor, block_size>;  ///< by lane
     static Cursors first_covered(const PatchBlock& block, const LayeredRows& layer) {
         Cursors cursors;
-        for (Index lane = 0; lane < block.count; ++lane) cursors[lane] = {layer.covered[block.first + lane]};
+        for (Index lane = 0; lane < block.count; ++lane) cursors[lane] = {layer.lines[block.first + lane]};
         return cursors;
     }
 
@@ -298,10 +328,20 @@ void finish(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& 
     compile_whole(matrix, scene, visible, context);
 }
 
-void append(RowChanges& changes, const RowChanges& more) {
-    changes.sight.insert(changes.sight.end(), more.sight.begin(), more.sight.end());
-    changes.light.insert(changes.light.end(), more.light.begin(), more.light.end());
-    changes.lines += more.lines;
+bool by_line(const LineChange& a, const LineChange& b) {
+    return a.line < b.line;
+}
+
+/// Calls `work(b, layers)` for every static block, chunk by chunk, each with a list of changes of its own.
+template <class Work>
+void for_blocks(LayeredMatrix& matrix, const LayerScene& scene, const Context& context, const Work& work) {
+    const std::size_t blocks = matrix.ledger.has_moving_lamps ? 0 : scene.sight.static_blocks();
+    std::vector<RowChanges>& parts = matrix.ledger.changes;
+    parts.resize((blocks + blocks_per_chunk - 1) / blocks_per_chunk);
+    context.for_chunks(blocks, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
+        Layers layers(matrix, scene, parts[begin / blocks_per_chunk]);
+        for (std::size_t b = begin; b < end; ++b) work(b, layers);
+    });
 }
 
 }  // namespace
@@ -321,44 +361,54 @@ LayeredMatrix make_layered_matrix(const LayerScene& scene, const Context& contex
         layer->base.row_begin.resize(patches + 1, layer->base.column.size());
         layer->columns = columns_of(layer->base, context);
         layer->covered.resize(patches);
+        layer->lines.resize(patches);
         layer->scale.assign(patches, 0);
     }
     return matrix;
 }
 
-RowChanges show(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
-                const Context& context) {
-    RowChanges all;
-    if (!matrix.ledger.has_moving_lamps) {
-        const std::size_t blocks = scene.sight.static_blocks();
-        std::vector<RowChanges> parts((blocks + blocks_per_chunk - 1) / blocks_per_chunk);
-        context.for_chunks(blocks, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
-            LineChanges found;
-            const Comparison comparison(matrix, scene, visible);
-            for (std::size_t b = begin; b < end; ++b) {
-                comparison.find_sight(b, found.sight);
-                comparison.find_light(b, found.light);
-            }
-            Layers layers(matrix, scene, parts[begin / blocks_per_chunk]);
-            for (const LineChange& change : found.sight) layers.show_sight(change);
-            for (const Index line : found.light) layers.show_light(line, visible.light_contribution[line]);
-        });
-        for (const RowChanges& part : parts) append(all, part);
-    }
+std::span<const RowChanges> show(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
+                                 const Context& context) {
+    const Comparison comparison(matrix, scene, visible);
+    for_blocks(matrix, scene, context, [&](std::size_t b, Layers& layers) {
+        LineChanges found;
+        comparison.find_sight(b, found.sight);
+        comparison.find_light(b, found.light);
+        layers.show_sight(scene.sight.blocks()[b], found.sight);
+        for (const Index line : found.light) layers.show_light(line, visible.light_contribution[line]);
+    });
     finish(matrix, scene, visible, context);
-    return all;
+    return matrix.ledger.changes;
 }
 
-RowChanges show(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
-                const LineChanges& changes, const Context& context) {
-    RowChanges all;
-    if (!matrix.ledger.has_moving_lamps) {
-        Layers layers(matrix, scene, all);
-        for (const LineChange& change : changes.sight) layers.show_sight(change);
-        for (const Index line : changes.light) layers.show_light(line, visible.light_contribution[line]);
-    }
+std::span<const RowChanges> show(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
+                                 LineChanges changes, const Context& context) {
+    // In most frames they are sorted already.
+    if (!std::is_sorted(changes.sight.begin(), changes.sight.end(), by_line))
+        std::stable_sort(changes.sight.begin(), changes.sight.end(), by_line);
+    std::sort(changes.light.begin(), changes.light.end());
+    for_blocks(matrix, scene, context, [&](std::size_t b, Layers& layers) {
+        const PatchBlock& block = scene.sight.blocks()[b];
+        const auto from = [&](Index direction) {
+            const LineChange first{static_cast<Index>(scene.sight.line(block, direction, 0)), 0, 0};
+            return std::lower_bound(changes.sight.begin(), changes.sight.end(), first, by_line);
+        };
+        layers.show_sight(block, {from(0), from(scene.sight.lines_per_patch())});
+        const auto light_from = [&](Index k) {
+            return std::lower_bound(changes.light.begin(), changes.light.end(),
+                                    static_cast<Index>(scene.light.line(block, k, 0)));
+        };
+        for (auto line = light_from(0); line != light_from(scene.light.lines_per_patch()); ++line)
+            layers.show_light(*line, visible.light_contribution[*line]);
+    });
     finish(matrix, scene, visible, context);
-    return all;
+    return matrix.ledger.changes;
+}
+
+std::uint64_t lines_changed(std::span<const RowChanges> changes) {
+    std::uint64_t lines = 0;
+    for (const RowChanges& part : changes) lines += part.lines;
+    return lines;
 }
 
 std::vector<Rgb> lamp_irradiance(const LayeredMatrix& matrix, const Lamps& lamps,
@@ -378,9 +428,9 @@ std::vector<Rgb> lamp_irradiance(const LayeredMatrix& matrix, const Lamps& lamps
     context.for_chunks(matrix.rows(), rows_per_chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row)
             for (const LayeredRows* layer : {&matrix.sight, &matrix.light})
-                for (const CoveredLine& line : layer->covered[row])
+                for (const CoveredEntry& entry : layer->covered[row])
                     irradiance[row] +=
-                        layer->scale[row] * line.value * (light_of(line.now) - light_of(line.base));
+                        layer->scale[row] * entry.value * (light_of(entry.now) - light_of(entry.base));
     });
     for (std::size_t k = 0; k < matrix.whole_rows.size(); ++k)
         for (auto e = matrix.whole.row_begin[k]; e < matrix.whole.row_begin[k + 1]; ++e)

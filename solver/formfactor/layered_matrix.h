@@ -8,22 +8,29 @@
 
 namespace afterglow {
 
-/// A line of a static patch that sees something else than its background.
+/// What a line of a static patch counts for while it does not see its background. The columns of lines that
+/// count for no patch are `nowhere`.
+struct CoveredEntry {
+    Index base = 0;  ///< the column that the base counts it in
+    Index now = 0;   ///< the column that it counts in at this time
+    float value = 0;
+};
+
+/// Which line that is.
 struct CoveredLine {
     Index line = 0;
-    Index base = 0;    ///< the column that the base counts it in; `nowhere` where in none
-    Index now = 0;     ///< the column that it counts in at this time, likewise
-    Index target = 0;  ///< what it sees at this time: patch, sees_nothing or sees_inside
-    float value = 0;
+    Index background = 0;  ///< what it sees without actors, for light lines their lamp patch
+    Index target = 0;      ///< what it sees at this time: patch, sees_nothing or sees_inside
 };
 
 /// Rows of one kind of lines before they are scaled: what is there without actors, which never changes, and
 /// what actors cover. Row i of F gets scale[i] (base_i + Σ value (column now − column base)).
 struct LayeredRows {
     FormFactorMatrix base;
-    FormFactorColumns columns;                      ///< of the base
-    std::vector<std::vector<CoveredLine>> covered;  ///< by row, in the order of lines
-    std::vector<float> scale;                       ///< by row
+    FormFactorColumns columns;                       ///< of the base
+    std::vector<std::vector<CoveredEntry>> covered;  ///< by row, in the order of lines
+    std::vector<std::vector<CoveredLine>> lines;     ///< likewise: which line each entry is
+    std::vector<float> scale;                        ///< by row
 };
 
 /// A line of a row that counted in one column and counts in another.
@@ -32,7 +39,7 @@ struct RowChange {
     float value = 0;
 };
 
-/// Changes in the order in which they were made; unscaled.
+/// What changed in some rows, unscaled.
 struct RowChanges {
     std::vector<RowChange> sight, light;
     std::uint64_t lines = 0;  ///< sight lines that see something else, whether or not their columns differ
@@ -62,6 +69,7 @@ struct LayeredMatrix {
         std::vector<LineTally> tally;      ///< by static patch
         std::vector<double> from_lamps;    ///< by static patch: Σ of its light lines' values, none covered
         std::vector<char> by_light_lines;  ///< by static patch and lamp
+        std::vector<RowChanges> changes;   ///< made by the latest `show`; no two parts change the same row
     } ledger;
 
     [[nodiscard]] std::size_t rows() const { return sky.size(); }
@@ -85,15 +93,19 @@ struct LayerScene {
 LayeredMatrix make_layered_matrix(const LayerScene& scene, const Context& context);
 
 /// Brings the layers to what lines see now, comparing all static ones with what is shown. F is then that of
-/// compile_rows, up to rounding. Returns what changed in the layers. The same for any number of threads.
-/// Errors: cancelled; the matrix is then of no more use.
-RowChanges show(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
-                const Context& context);
+/// compile_rows, up to rounding. Returns what changed in the layers, in parts of which no two change the same
+/// row; they belong to the matrix until the next `show`. The same for any number of threads. Errors:
+/// cancelled; the matrix is then of no more use.
+std::span<const RowChanges> show(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
+                                 const Context& context);
 
-/// The same where the lines that changed since the last `show` are known: all of them, in any order, and
-/// once for each time they changed.
-RowChanges show(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
-                const LineChanges& changes, const Context& context);
+/// The same where the lines that changed since the last `show` are known: all of them, once for each time
+/// they changed, and those of one line in the order of time. Cheaper where sight lines come by number.
+std::span<const RowChanges> show(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
+                                 LineChanges changes, const Context& context);
+
+/// How many sight lines came to see something else.
+std::uint64_t lines_changed(std::span<const RowChanges> changes);
 
 /// Irradiance that lamps alone give every patch, W/m²: Σ over their patches of F_ij E_j. `emission` by patch.
 std::vector<Rgb> lamp_irradiance(const LayeredMatrix& matrix, const Lamps& lamps,

@@ -48,8 +48,7 @@ std::vector<LightInPlace> lights_at(const World& world, double time_s) {
 
 std::vector<Rgb> sky_irradiance(const World& world, std::span<const float> sky) {
     std::vector<Rgb> irradiance(sky.size());
-    for (std::size_t p = 0; p < irradiance.size(); ++p)
-        irradiance[p] = pi * sky[p] * world.background;
+    for (std::size_t p = 0; p < irradiance.size(); ++p) irradiance[p] = pi * sky[p] * world.background;
     return irradiance;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "solver/formfactor/row_counter.h"
+
 namespace afterglow {
 
 namespace {
@@ -21,34 +23,17 @@ struct Part {
     std::vector<Index> row_size;
     std::vector<Index> column;
     std::vector<float> value;
+
+    void add(Index patch, float factor) {
+        column.push_back(patch);
+        value.push_back(factor);
+    }
 };
 
-/// Collects one row, merging equal columns by a table of where each was last put.
-class RowBuilder {
-  public:
-    explicit RowBuilder(std::size_t columns) : place_(columns, 0) {}
-
-    void begin(Part& part) {
-        part_ = &part;
-        first_ = part.column.size();
-    }
-    void add(Index column, float value) {
-        std::size_t& place = place_[column];
-        // Stale places lie before this row or hold another column.
-        if (place >= first_ && place < part_->column.size() && part_->column[place] == column) {
-            part_->value[place] += value;
-            return;
-        }
-        place = part_->column.size();
-        part_->column.push_back(column);
-        part_->value.push_back(value);
-    }
-    void end() { part_->row_size.push_back(static_cast<Index>(part_->column.size() - first_)); }
-
-  private:
-    std::vector<std::size_t> place_;
-    Part* part_ = nullptr;
-    std::size_t first_ = 0;
+/// What a patch's sight lines meet.
+struct Tally {
+    Index outside = 0, buried = 0, on_lamps = 0, on_others = 0;
+    [[nodiscard]] Index valid() const { return outside + on_lamps + on_others; }
 };
 
 class RowCompiler {
@@ -63,81 +48,77 @@ class RowCompiler {
           seen_(seen),
           out_(out) {}
 
-    /// The row of a patch, the `place`-th asked for.
-    void compile(Index patch, std::size_t place, RowBuilder& row, Part& part) const {
-        row.begin(part);
-        const std::size_t block = lines_.block_of(patch);
-        compile_row(block, patch, place, row);
-        row.end();
+    /// Which lamp patches a block's light lines end on, by line.
+    void lamp_patches(std::size_t block, std::vector<Index>& patches) const {
+        patches.resize(light_lines_.lines_per_patch());
+        for (Index k = 0; k < patches.size(); ++k) patches[k] = light_lines_.lamp_patch(block, k);
+    }
+
+    /// The row of a patch of a block, the `place`-th asked for.
+    void compile(const PatchBlock& block, Index patch, std::size_t place, std::span<const Index> lamp_patches,
+                 RowCounter& row, Part& part) const {
+        const std::size_t first = part.column.size();
+        compile_row(block, patch, place, lamp_patches, row, part);
+        part.row_size.push_back(static_cast<Index>(part.column.size() - first));
     }
 
   private:
-    /// What a patch's sight lines meet.
-    struct Count {
-        Index outside = 0, buried = 0, on_lamps = 0, on_others = 0;
-        [[nodiscard]] Index valid() const { return outside + on_lamps + on_others; }
-    };
-
+    /// Counts lines by target into the row, all but those that light lines count.
     template <class ByLightLines>
-    Count count_lines(const PatchBlock& block, Index lane, const ByLightLines& by_light_lines) const {
-        Count count;
+    Tally count_lines(const PatchBlock& block, Index lane, const ByLightLines& by_light_lines,
+                      RowCounter& row) const {
+        Tally tally;
         for (Index d = 0; d < seen_.directions; ++d) {
             const Index target = seen_.visible[lines_.line(block, d, lane)];
-            if (target == sees_nothing)
-                ++count.outside;
-            else if (target == sees_inside)
-                ++count.buried;
-            else if (by_light_lines(target))
-                ++count.on_lamps;
-            else
-                ++count.on_others;
+            if (target == sees_nothing) {
+                ++tally.outside;
+            } else if (target == sees_inside) {
+                ++tally.buried;
+            } else if (by_light_lines(target)) {
+                ++tally.on_lamps;
+            } else {
+                ++tally.on_others;
+                row.add(target, 1);
+            }
         }
-        return count;
+        return tally;
     }
 
-    void compile_row(std::size_t block_index, Index patch, std::size_t place, RowBuilder& row) const {
-        const PatchBlock& block = lines_.blocks()[block_index];
+    void compile_row(const PatchBlock& block, Index patch, std::size_t place,
+                     std::span<const Index> lamp_patches, RowCounter& row, Part& part) const {
         const Index lane = patch - block.first;
         const std::vector<char> near = lamps_near(mesh_, lamps_, placed_, patch);
         const auto by_light_lines = [&](Index target) {
             const Index lamp = lamps_.lamp_of_patch[target];
             return lamp != no_index && near[lamp] == 0;
         };
-        const Count count = count_lines(block, lane, by_light_lines);
-        out_.valid_share[place] = static_cast<float>(count.valid()) / static_cast<float>(seen_.directions);
-        if (count.valid() == 0) return;
+        Tally tally = count_lines(block, lane, by_light_lines, row);
+        out_.valid_share[place] = static_cast<float>(tally.valid()) / static_cast<float>(seen_.directions);
+        if (tally.valid() == 0) return;
 
         // Buried origins gave zeros; the others stand for the whole patch.
         const float scale = 1 / out_.valid_share[place];
         float from_lamps = 0;
-        for (Index k = 0; k < light_lines_.lines_per_patch(); ++k)
-            if (by_light_lines(light_lines_.lamp_patch(block_index, k)))
+        for (Index k = 0; k < lamp_patches.size(); ++k)
+            if (by_light_lines(lamp_patches[k]))
                 from_lamps += scale * seen_.light_contribution[light_lines_.line(block, k, lane)];
-        const Index others = count.outside + count.on_others;
+        Index others = tally.outside + tally.on_others;
+        float weight = (1 - from_lamps) / static_cast<float>(others);
         if (from_lamps >= 1 || others == 0) {
             // Lamps fill the view: sight lines count them better than light lines can.
-            add_sight_lines(block, lane, 1 / static_cast<float>(count.valid()), row,
-                            [](Index) { return true; });
-            out_.sky[place] = static_cast<float>(count.outside) / static_cast<float>(count.valid());
-            return;
+            row.end_row([](Index, float) {});
+            tally = count_lines(
+                block, lane, [](Index) { return false; }, row);
+            weight = 1 / static_cast<float>(tally.valid());
+            lamp_patches = {};
         }
-        for (Index k = 0; k < light_lines_.lines_per_patch(); ++k) {
-            const Index target = light_lines_.lamp_patch(block_index, k);
+        row.end_row([&](Index column, float lines) { part.add(column, weight * lines); });
+        out_.sky[place] = weight * static_cast<float>(tally.outside);
+        for (Index k = 0; k < lamp_patches.size(); ++k) {
             const float contribution = scale * seen_.light_contribution[light_lines_.line(block, k, lane)];
-            if (contribution > 0 && by_light_lines(target)) row.add(target, contribution);
+            if (contribution > 0 && by_light_lines(lamp_patches[k])) row.add(lamp_patches[k], contribution);
         }
-        const float weight = (1 - from_lamps) / static_cast<float>(others);
-        add_sight_lines(block, lane, weight, row, [&](Index target) { return !by_light_lines(target); });
-        out_.sky[place] = weight * static_cast<float>(count.outside);
-    }
-
-    template <class Counts>
-    void add_sight_lines(const PatchBlock& block, Index lane, float weight, RowBuilder& row,
-                         const Counts& counts) const {
-        for (Index d = 0; d < seen_.directions; ++d) {
-            const Index target = seen_.visible[lines_.line(block, d, lane)];
-            if (target != sees_nothing && target != sees_inside && counts(target)) row.add(target, weight);
-        }
+        row.end_row([&](Index column, float factor) { part.add(column, factor); });
     }
 
     const PatchMesh& mesh_;
@@ -193,9 +174,18 @@ FormFactors compile_rows_of(std::span<const Index> patches, const PatchMesh& mes
     const RowCompiler compiler(mesh, lines, light_lines, lamps, placed, seen, out);
     std::vector<Part> parts((patches.size() + rows_per_chunk - 1) / rows_per_chunk);
     context.for_chunks(patches.size(), rows_per_chunk, [&](std::size_t begin, std::size_t end) {
-        RowBuilder row(mesh.size());
-        for (std::size_t k = begin; k < end; ++k)
-            compiler.compile(patches[k], k, row, parts[begin / rows_per_chunk]);
+        RowCounter row(mesh.size());
+        std::vector<Index> lamp_patches;
+        std::size_t block = lines.blocks().size();
+        for (std::size_t k = begin; k < end; ++k) {
+            // Neighbours mostly follow each other.
+            if (const std::size_t its = lines.block_of(patches[k]); its != block) {
+                block = its;
+                compiler.lamp_patches(block, lamp_patches);
+            }
+            compiler.compile(lines.blocks()[block], patches[k], k, lamp_patches, row,
+                             parts[begin / rows_per_chunk]);
+        }
     });
     out.matrix = join(parts, patches.size(), context);
     return out;

@@ -21,8 +21,8 @@ void add_light(DoubleLanes& sum, float value, const DoubleLanes::Vector& light) 
 /// What a row of a layer gathers, computed afresh.
 DoubleLanes gather_layer(const LayeredRows& layer, std::size_t row, std::span<const Lanes> radiosity) {
     DoubleLanes sum = gather_row(layer.base, row, radiosity);
-    for (const CoveredLine& line : layer.covered[row])
-        add_light(sum, line.value, to_double(radiosity[line.now]).v - to_double(radiosity[line.base]).v);
+    for (const CoveredEntry& entry : layer.covered[row])
+        add_light(sum, entry.value, to_double(radiosity[entry.now]).v - to_double(radiosity[entry.base]).v);
     return sum;
 }
 
@@ -31,6 +31,12 @@ void gather_rows(ResidualState& state, const ResidualProblem& problem, std::size
         state.by_sight[row] = gather_layer(problem.matrix.sight, row, state.radiosity);
         state.by_light[row] = gather_layer(problem.matrix.light, row, state.radiosity);
     }
+}
+
+void gather_all(ResidualState& state, const ResidualProblem& problem, const Context& context) {
+    context.for_chunks(problem.matrix.rows(), rows_per_chunk / 4, [&](std::size_t first, std::size_t last) {
+        gather_rows(state, problem, first, last);
+    });
 }
 
 void gather_whole(ResidualState& state, const ResidualProblem& problem, const Context& context) {
@@ -60,12 +66,14 @@ struct Survey {
 /// Computes irradiance and residual of all patches from the sums.
 class Surveyor {
   public:
-    Surveyor(ResidualState& state, const ResidualProblem& problem) : state_(state), problem_(problem) {
+    Surveyor(ResidualState& state, const ResidualProblem& problem)
+        : state_(state), problem_(problem), whole_(state.workspace.place_of_whole) {
         whole_.assign(problem.matrix.rows(), no_index);
         for (std::size_t k = 0; k < problem.matrix.whole_rows.size(); ++k)
             whole_[problem.matrix.whole_rows[k]] = static_cast<Index>(k);
     }
 
+    /// All there is to know.
     Survey look(double gain, double asked_error, const Context& context) {
         std::vector<Part> parts((whole_.size() + rows_per_chunk - 1) / rows_per_chunk);
         context.for_chunks(whole_.size(), rows_per_chunk, [&](std::size_t first, std::size_t last) {
@@ -86,6 +94,25 @@ class Surveyor {
         survey.certificate = make_certificate(left + rounding, gain, mean);
         survey.only_rounding = 8 * left <= rounding;
         return survey;
+    }
+
+    /// The residuals alone, and the largest of them, while `received` is still on its way to the sums.
+    float look_again(std::span<const Lanes> by_sight, std::span<const Lanes> by_light,
+                     const Context& context) {
+        std::vector<float> largest((whole_.size() + rows_per_chunk - 1) / rows_per_chunk);
+        context.for_chunks(whole_.size(), rows_per_chunk, [&](std::size_t first, std::size_t last) {
+            float here = 0;
+            for (std::size_t i = first; i < last; ++i) {
+                const Lanes::Vector received = problem_.matrix.sight.scale[i] * by_sight[i].v +
+                                               problem_.matrix.light.scale[i] * by_light[i].v;
+                state_.residual[i] = problem_.emission[i] +
+                                     problem_.reflectance[i] * (state_.irradiance[i] + to_rgb({received})) -
+                                     to_rgb(state_.radiosity[i]);
+                here = std::max(here, max_channel(glm::abs(state_.residual[i])));
+            }
+            largest[first / rows_per_chunk] = here;
+        });
+        return *std::max_element(largest.begin(), largest.end());
     }
 
   private:
@@ -116,31 +143,55 @@ class Surveyor {
 
     ResidualState& state_;
     const ResidualProblem& problem_;
-    std::vector<Index> whole_;  // where a row stands among the whole ones
+    std::vector<Index>& whole_;  // where a row stands among the whole ones
 };
 
-/// Changes radiosity by the residuals and lets the rows know.
+/// Changes radiosity by the residuals and lets the rows know. What actors cover, and whole rows, learn of it
+/// in the end only, once for many rounds: that changes little of what is pushed.
 class Pusher {
   public:
-    Pusher(ResidualState& state, const ResidualProblem& problem)
-        : state_(state), problem_(problem), change_(state.radiosity.size()) {}
+    Pusher(ResidualState& state, const ResidualProblem& problem, Surveyor& surveyor)
+        : state_(state),
+          problem_(problem),
+          surveyor_(surveyor),
+          change_(state.workspace.change),
+          is_pushed_(state.workspace.is_pushed),
+          by_sight_(state.workspace.by_sight),
+          by_light_(state.workspace.by_light) {
+        change_.assign(state.radiosity.size(), {});
+        is_pushed_.assign(state.radiosity.size(), 0);
+        by_sight_.assign(problem.matrix.rows(), {});
+        by_light_.assign(problem.matrix.rows(), {});
+    }
 
     /// Returns whether any radiosity changed at all.
     bool push(const Survey& survey, const ResidualConfig& config, const Context& context) {
-        const double threshold =
-            std::max(config.push_share * survey.largest, config.least_share * survey.enough);
-        std::vector<Index> pushed;
-        for (std::size_t i = 0; i < state_.residual.size(); ++i)
-            if (static_cast<double>(max_channel(glm::abs(state_.residual[i]))) >= threshold)
-                pushed.push_back(static_cast<Index>(i));
-        const bool sweeps = entries_of(pushed) >= config.sweep_share * static_cast<double>(all_entries());
-        const bool moved = sweeps ? sweep(context) : push_along_columns(pushed, context);
-        gather_whole(state_, problem_, context);
-        ++state_.rounds;
+        bool moved = false, gathered = false;
+        double largest = survey.largest;
+        for (int round = 0; round < config.rounds_between_surveys && !gathered && largest > survey.enough;
+             ++round) {
+            const std::vector<Index> patches =
+                choose(std::max(config.push_share * largest, config.least_share * survey.enough));
+            gathered = entries_of(patches) >= config.sweep_share * static_cast<double>(all_entries());
+            if (gathered && round > 0) break;
+            ++state_.rounds;
+            if (gathered) return sweep(context);
+            if (!push_along_columns(patches)) break;
+            moved = true;
+            largest = surveyor_.look_again(by_sight_, by_light_, context);
+        }
+        settle(context);
         return moved;
     }
 
   private:
+    [[nodiscard]] std::vector<Index> choose(double threshold) const {
+        std::vector<Index> patches;
+        for (std::size_t i = 0; i < state_.residual.size(); ++i)
+            if (static_cast<double>(max_channel(glm::abs(state_.residual[i]))) >= threshold)
+                patches.push_back(static_cast<Index>(i));
+        return patches;
+    }
     [[nodiscard]] double entries_of(std::span<const Index> patches) const {
         std::uint64_t entries = 0;
         for (const LayeredRows* layer : {&problem_.matrix.sight, &problem_.matrix.light})
@@ -152,62 +203,75 @@ class Pusher {
         return problem_.matrix.sight.base.entries() + problem_.matrix.light.base.entries();
     }
 
-    /// B takes up its residual; what it changed by, exactly, stays in change_.
-    bool take_up(std::size_t i) {
+    /// B takes up its residual; returns by how much it changed, exactly.
+    Lanes take_up(std::size_t i) {
         const Lanes before = state_.radiosity[i];
         state_.radiosity[i] = to_lanes(to_rgb(before) + state_.residual[i]);
-        change_[i].v = to_double(state_.radiosity[i]).v - to_double(before).v;
-        const bool moved = change_[i].v[0] != 0 || change_[i].v[1] != 0 || change_[i].v[2] != 0;
-        state_.pushes += moved ? 1 : 0;
-        return moved;
+        const DoubleLanes::Vector change = to_double(state_.radiosity[i]).v - to_double(before).v;
+        change_[i].v += change;
+        state_.pushes += change[0] != 0 || change[1] != 0 || change[2] != 0 ? 1 : 0;
+        return {__builtin_convertvector(change, Lanes::Vector)};
     }
 
     bool sweep(const Context& context) {
-        bool moved = false;
-        for (std::size_t i = 0; i < state_.residual.size(); ++i) {
-            moved = take_up(i) || moved;
-            change_[i] = {};
-        }
+        const std::uint64_t before = state_.pushes;
+        for (std::size_t i = 0; i < state_.residual.size(); ++i) take_up(i);
+        std::fill(change_.begin(), change_.end(), DoubleLanes{});
         ++state_.sweeps;
-        context.for_chunks(
-            problem_.matrix.rows(), rows_per_chunk / 4,
-            [&](std::size_t first, std::size_t last) { gather_rows(state_, problem_, first, last); });
-        return moved;
+        gather_all(state_, problem_, context);
+        gather_whole(state_, problem_, context);
+        return state_.pushes > before;
     }
 
-    bool push_along_columns(std::span<const Index> patches, const Context& context) {
-        bool moved = false;
-        for (const Index i : patches) moved = take_up(i) || moved;
-        send(problem_.matrix.sight.columns, patches, state_.by_sight);
-        send(problem_.matrix.light.columns, patches, state_.by_light);
+    bool push_along_columns(std::span<const Index> patches) {
+        const std::uint64_t before = state_.pushes;
+        for (const Index i : patches) {
+            const Lanes change = take_up(i);
+            is_pushed_[i] = 1;
+            send(problem_.matrix.sight.columns, i, change.v, by_sight_);
+            send(problem_.matrix.light.columns, i, change.v, by_light_);
+        }
+        return state_.pushes > before;
+    }
+
+    static void send(const FormFactorColumns& columns, Index i, const Lanes::Vector& change,
+                     std::span<Lanes> received) {
+        for (std::uint64_t e = columns.column_begin[i]; e < columns.column_begin[i + 1]; ++e)
+            received[columns.row[e]].v += columns.value[e] * change;
+    }
+
+    /// Adds what is on its way to the sums.
+    void settle(const Context& context) {
         context.for_chunks(problem_.matrix.rows(), rows_per_chunk, [&](std::size_t first, std::size_t last) {
             for (std::size_t row = first; row < last; ++row) {
+                state_.by_sight[row].v += to_double(by_sight_[row]).v;
+                state_.by_light[row].v += to_double(by_light_[row]).v;
+                by_sight_[row] = by_light_[row] = {};
                 cover(problem_.matrix.sight.covered[row], state_.by_sight[row]);
                 cover(problem_.matrix.light.covered[row], state_.by_light[row]);
             }
         });
-        for (const Index i : patches) change_[i] = {};
-        return moved;
-    }
-
-    void send(const FormFactorColumns& columns, std::span<const Index> patches,
-              std::span<DoubleLanes> sums) const {
-        for (const Index i : patches) {
-            const DoubleLanes::Vector change = change_[i].v;
-            for (std::uint64_t e = columns.column_begin[i]; e < columns.column_begin[i + 1]; ++e)
-                add_light(sums[columns.row[e]], columns.value[e], change);
-        }
+        std::fill(change_.begin(), change_.end(), DoubleLanes{});
+        std::fill(is_pushed_.begin(), is_pushed_.end(), std::uint8_t{0});
+        gather_whole(state_, problem_, context);
     }
 
     /// The columns of the base know nothing of what actors cover.
-    void cover(std::span<const CoveredLine> covered, DoubleLanes& sum) const {
-        for (const CoveredLine& line : covered)
-            add_light(sum, line.value, change_[line.now].v - change_[line.base].v);
+    void cover(std::span<const CoveredEntry> covered, DoubleLanes& sum) const {
+        for (const CoveredEntry& entry : covered)
+            // Few patches are pushed, and these bytes stay near at hand.
+            if ((is_pushed_[entry.now] | is_pushed_[entry.base]) != 0)
+                add_light(sum, entry.value, change_[entry.now].v - change_[entry.base].v);
     }
 
     ResidualState& state_;
     const ResidualProblem& problem_;
-    std::vector<DoubleLanes> change_;  // of B, by patch; 0 but while it is sent
+    Surveyor& surveyor_;
+    // See ResidualState::Workspace.
+    std::vector<DoubleLanes>& change_;
+    std::vector<std::uint8_t>& is_pushed_;
+    std::vector<Lanes>& by_sight_;
+    std::vector<Lanes>& by_light_;
 };
 
 void check(const ResidualProblem& problem, std::size_t state_size) {
@@ -220,12 +284,6 @@ void check(const ResidualProblem& problem, std::size_t state_size) {
     require(problem.reflectance.size(), "reflectance");
     require(problem.external_irradiance.size(), "external irradiance");
     require(state_size, "state");
-}
-
-void gather_all(ResidualState& state, const ResidualProblem& problem, const Context& context) {
-    context.for_chunks(problem.matrix.rows(), rows_per_chunk / 4, [&](std::size_t first, std::size_t last) {
-        gather_rows(state, problem, first, last);
-    });
 }
 
 }  // namespace
@@ -244,7 +302,7 @@ ResidualState make_residual_state(const ResidualProblem& problem, const Context&
     return state;
 }
 
-void follow(ResidualState& state, const ResidualProblem& problem, const RowChanges& changes,
+void follow(ResidualState& state, const ResidualProblem& problem, std::span<const RowChanges> changes,
             const Context& context) {
     check(problem, state.irradiance.size());
     const auto apply = [&](std::span<const RowChange> list, std::vector<DoubleLanes>& sums) {
@@ -252,8 +310,10 @@ void follow(ResidualState& state, const ResidualProblem& problem, const RowChang
             add_light(sums[change.row], change.value,
                       to_double(state.radiosity[change.to]).v - to_double(state.radiosity[change.from]).v);
     };
-    apply(changes.sight, state.by_sight);
-    apply(changes.light, state.by_light);
+    context.for_chunks(changes.size(), 1, [&](std::size_t part, std::size_t) {
+        apply(changes[part].sight, state.by_sight);
+        apply(changes[part].light, state.by_light);
+    });
     const std::size_t share = problem.matrix.rows() / refresh_period + 1;
     const std::size_t first = std::min(state.next_refresh, problem.matrix.rows());
     const std::size_t last = std::min(first + share, problem.matrix.rows());
@@ -275,7 +335,7 @@ Certificate step(ResidualState& state, const ResidualProblem& problem, const Res
     state.status = ResidualStatus::running;
     gather_whole(state, problem, context);
     Surveyor surveyor(state, problem);
-    Pusher pusher(state, problem);
+    Pusher pusher(state, problem, surveyor);
     const std::uint64_t pushes_before = state.pushes;
     for (;;) {
         const Survey survey = surveyor.look(gain, config.asked_error, context);

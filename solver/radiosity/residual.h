@@ -30,6 +30,8 @@ struct ResidualConfig {
     double push_share = 0.5;
     /// Nothing is pushed whose residual is below this share of what would be good enough, in (0, 1].
     double least_share = 0.5;
+    /// Rounds made before what actors cover hears of them and the residual is computed exactly, 1 or more.
+    int rounds_between_surveys = 16;
     /// A round whose columns hold at least this share of all entries is made as a sweep: all patches are
     /// pushed, and the rows gather them in parallel.
     double sweep_share = 0.25;
@@ -59,6 +61,14 @@ struct ResidualState {
     std::uint64_t sweeps = 0;
     std::size_t next_refresh = 0;  ///< the row from which on sums are computed afresh in the next frame
     ResidualStatus status = ResidualStatus::running;
+
+    /// Room to work in that is kept, since it takes longer to get than to use; means nothing between calls.
+    struct Workspace {
+        std::vector<DoubleLanes> change;        ///< of B, by patch, since the sums were right
+        std::vector<std::uint8_t> is_pushed;    ///< by patch: whether there is any
+        std::vector<Lanes> by_sight, by_light;  ///< what the sums of the layers are still to receive
+        std::vector<Index> place_of_whole;      ///< by row: where it stands among the whole ones
+    } workspace;
 };
 
 /// Starts with what shines by itself, B = E, and nothing reflected.
@@ -67,7 +77,7 @@ ResidualState make_residual_state(const ResidualProblem& problem, const Context&
 
 /// Takes over what changed in the layers since the state's sums were right, and computes a share of all sums
 /// afresh, so that rounding is forgotten after 64 calls at the latest. `problem.matrix` is as `show` left it.
-void follow(ResidualState& state, const ResidualProblem& problem, const RowChanges& changes,
+void follow(ResidualState& state, const ResidualProblem& problem, std::span<const RowChanges> changes,
             const Context& context);
 
 /// Pushes the largest residuals, signed, until the certificate is met, only rounding is left, or
@@ -75,7 +85,7 @@ void follow(ResidualState& state, const ResidualProblem& problem, const RowChang
 /// certificate of E + ρH: its error is at most g times that of B, and the residual of B is computed, not
 /// estimated, with the rounding of sums added. Same bits for any number of threads and any division into
 /// calls. Source: Southwell's relaxation; Chen 1990, whose ± energy it generalises. Errors: cannot_converge
-/// where the gain is 1 or more; invalid_input; cancelled leaves a consistent state.
+/// where the gain is 1 or more; invalid_input; cancelled, after which the state is of no more use.
 Certificate step(ResidualState& state, const ResidualProblem& problem, const ResidualConfig& config,
                  const Context& context);
 

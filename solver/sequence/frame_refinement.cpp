@@ -92,11 +92,12 @@ void FrameRefinement::follow(double asked_error, const Context& context) {
         kept.emplace(KeptLight{make_layered_matrix(parts_.layers(), context), std::nullopt});
         listed.reset();
     }
-    const RowChanges changes = listed ? show(kept->matrix, parts_.layers(), parts_.visible, *listed, context)
-                                      : show(kept->matrix, parts_.layers(), parts_.visible, context);
+    const auto changes =
+        listed ? show(kept->matrix, parts_.layers(), parts_.visible, std::move(*listed), context)
+               : show(kept->matrix, parts_.layers(), parts_.visible, context);
     light_from_outside(kept->matrix.valid_share, kept->matrix.sky, context);
     statistics_.visibility += looking.elapsed();
-    statistics_.visibility_changes = changes.lines;
+    statistics_.visibility_changes = lines_changed(changes);
 
     const Stopwatch watch;
     context.report(0.6, "solving the light");

@@ -29,7 +29,7 @@ struct LayeredWorld {
         make_retrace()->update({lined.mesh, lined.sight, lined.light, lined.caster, background},
                                {0, lined.sight.lines_per_patch()}, visible, Context(2));
     }
-    RowChanges show_at(double time_s, int threads = 2) {
+    std::span<const RowChanges> show_at(double time_s, int threads = 2) {
         look(time_s);
         return show(matrix, scene(), visible, Context(threads));
     }
@@ -48,9 +48,9 @@ inline std::vector<double> dense_row(const LayeredMatrix& matrix, std::size_t ro
         const double scale = layer->scale[row];
         for (auto e = layer->base.row_begin[row]; e < layer->base.row_begin[row + 1]; ++e)
             sum[layer->base.column[e]] += scale * static_cast<double>(layer->base.value[e]);
-        for (const CoveredLine& line : layer->covered[row]) {
-            sum[line.base] -= scale * static_cast<double>(line.value);
-            sum[line.now] += scale * static_cast<double>(line.value);
+        for (const CoveredEntry& entry : layer->covered[row]) {
+            sum[entry.base] -= scale * static_cast<double>(entry.value);
+            sum[entry.now] += scale * static_cast<double>(entry.value);
         }
     }
     for (std::size_t k = 0; k < matrix.whole_rows.size(); ++k)
