@@ -35,7 +35,9 @@ Json time_or_null(const std::optional<Timestamp>& time) {
 }
 
 Json statistics_json(const SequenceStatistics& statistics) {
-    return {{"patches", statistics.patches},
+    return {{"method", statistics.method},
+            {"method_reason", statistics.method_reason},
+            {"patches", statistics.patches},
             {"actor_patches", statistics.actor_patches},
             {"sight_lines", statistics.sight_lines},
             {"rays_per_patch", statistics.rays_per_patch},

@@ -26,6 +26,7 @@ RunFactory solver_runs(const SceneStore& scenes, std::filesystem::path cache_fol
     return [&scenes, cache = std::move(cache_folder)](const Job& job, const Context& context) {
         SequenceConfig config = job.settings.sequence;
         config.cache_folder = cache;
+        config.frames_expected = job.frame_count();
         World world = scenes.world(job.scene, job.paths, job.settings.background);
         return std::make_unique<SolverRun>(make_state(std::move(world), config, context));
     };

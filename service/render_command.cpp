@@ -81,15 +81,18 @@ void render_command(const RenderOptions& options, const std::stop_token& stop, C
     const FrameRange range = options.frames.value_or(FrameRange{0, last_frame_of(world, options.sequence)});
     Report report;
     report.scene = options.scene.string();
-    report.method = method_name(options.sequence);
     const auto loaded = Clock::now();
     report.load = loaded - started;
 
     std::string subject = "preparing";
     const Context context(options.threads, stop, [&](const Progress& p) { console.progress(subject, p); });
     const double steps = range.last - range.first + 2;  // preparing counts as a frame
-    SequenceState state = make_state(std::move(world), options.sequence, context.part(0, 1 / steps));
+    SequenceConfig config = options.sequence;
+    config.frames_expected = range.last - range.first + 1;
+    SequenceState state = make_state(std::move(world), config, context.part(0, 1 / steps));
     report.static_pass = Clock::now() - loaded;
+    if (const SequenceStatistics& chosen = state.statistics(); !chosen.method_reason.empty())
+        console.line("method " + chosen.method + ": " + chosen.method_reason);
     std::size_t warnings_shown = 0;
     for (int frame = range.first; frame <= range.last; ++frame) {
         subject = "frame " + std::to_string(frame);

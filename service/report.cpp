@@ -34,13 +34,6 @@ Json frame_json(const FrameStatistics& frame) {
 
 }  // namespace
 
-std::string method_name(const SequenceConfig& config) {
-    for (const Method& method : methods())
-        if (method.visibility == config.visibility && method.solution == config.solution)
-            return std::string(method.name);
-    return std::string(name_of(config.visibility)) + "+" + std::string(name_of(config.solution));
-}
-
 double peak_memory_mb() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -56,7 +49,7 @@ Json to_json(const Report& report, double peak_rss_mb) {
                          {"last_frame", work.frames.last},
                          {"ms", work.time.count()}});
     return {{"scene", report.scene},
-            {"method", report.method},
+            {"method", report.sequence.method},
             {"patches", report.sequence.patches},
             {"actor_patches", report.sequence.actor_patches},
             {"sight_lines", report.sequence.sight_lines},
@@ -65,7 +58,8 @@ Json to_json(const Report& report, double peak_rss_mb) {
             {"static_ms", report.static_pass.count()},
             {"precompute", std::move(ahead)},
             {"peak_rss_mb", peak_rss_mb},
-            {"frames", std::move(frames)}};
+            {"frames", std::move(frames)},
+            {"method_reason", report.sequence.method_reason}};
 }
 
 void require_writable_file(const std::filesystem::path& path) {

@@ -12,16 +12,11 @@ namespace afterglow {
 /// What a run cost. load + static pass + the frames' totals are the run's wall time.
 struct Report {
     std::string scene;            ///< as given
-    std::string method;           ///< see method_name
     Milliseconds load{};          ///< from the start of the program to the scene in memory
     Milliseconds static_pass{};   ///< meshing, acceleration structures and the pass over the furniture
-    SequenceStatistics sequence;  ///< counts
+    SequenceStatistics sequence;  ///< counts, and the method
     std::vector<FrameStatistics> frames;  ///< `total` with writing the files
 };
-
-/// The named method of these settings, or "VISIBILITY+SOLUTION" where no method pairs them.
-/// Thread-safety: pure.
-std::string method_name(const SequenceConfig& config);
 
 /// The most memory this process has held so far, in millions of bytes. Errors: none. Thread-safe.
 double peak_memory_mb();

@@ -9,7 +9,8 @@ namespace afterglow {
 
 namespace {
 
-constexpr std::array<Method, 3> all_methods{{
+constexpr std::array<Method, 4> all_methods{{
+    {"auto", Visibility::automatic, Solution::automatic, "by what the scene needs, and says which"},
     {"full", Visibility::retrace, Solution::progressive, "everything traced and solved anew at every frame"},
     {"baum86", Visibility::back_buffer, Solution::progressive,
      "static background kept, actors traced, solved anew"},
@@ -22,13 +23,15 @@ struct Named {
     std::string_view name;
     Value value;
 };
-constexpr std::array<Named<Visibility>, 4> visibilities{{
+constexpr std::array<Named<Visibility>, 5> visibilities{{
+    {"auto", Visibility::automatic},
     {"retrace", Visibility::retrace},
     {"back-buffer", Visibility::back_buffer},
     {"temporal-graph", Visibility::temporal_graph},
     {"events", Visibility::events},
 }};
-constexpr std::array<Named<Solution>, 2> solutions{{
+constexpr std::array<Named<Solution>, 3> solutions{{
+    {"auto", Solution::automatic},
     {"progressive", Solution::progressive},
     {"residual", Solution::residual},
 }};
@@ -69,6 +72,11 @@ std::span<const Method> methods() {
 }
 const Method& method_named(std::string_view name) {
     return entry_named(all_methods, name, "method");
+}
+std::string method_name(Visibility visibility, Solution solution) {
+    for (const Method& method : all_methods)
+        if (method.visibility == visibility && method.solution == solution) return std::string(method.name);
+    return std::string(name_of(visibility)) + "+" + std::string(name_of(solution));
 }
 Visibility visibility_named(std::string_view name) {
     return entry_named(visibilities, name, "visibility").value;

@@ -11,6 +11,7 @@ namespace afterglow {
 
 /// How each frame learns which patch every sight line sees.
 enum class Visibility {
+    automatic,       ///< by what moves and how many frames there are, see choose_method
     retrace,         ///< static and moving geometry traced anew: the yardstick
     back_buffer,     ///< Baum et al. 1986: only the actors are traced, up to the static background
     temporal_graph,  ///< Tost and Pueyo 1993: actors in order of depth, kept from frame to frame
@@ -19,6 +20,7 @@ enum class Visibility {
 
 /// How each frame's light is solved.
 enum class Solution {
+    automatic,    ///< likewise
     progressive,  ///< Cohen et al. 1988: shooting, cold every frame
     residual,     ///< the last frame's light, corrected where it no longer balances
 };
@@ -45,8 +47,10 @@ enum class Estimate {
 /// Settings of a job. What a frame finally is depends on these only, never on the clock or the number of
 /// threads.
 struct SequenceConfig {
-    Visibility visibility = Visibility::back_buffer;  ///< see Visibility
-    Solution solution = Solution::progressive;        ///< see Solution
+    Visibility visibility = Visibility::automatic;  ///< see Visibility
+    Solution solution = Solution::automatic;        ///< see Solution
+    int frames_expected =
+        0;  ///< frames that will be asked for, 0 if that is not known: what pays depends on it
     std::optional<int> rays_per_patch;  ///< sight lines of a patch, 16 to 65,536, rounded up to a multiple of
                                         ///< 16; by quality where not given
     std::optional<double> patch_size_m;  ///< target patch edge, even everywhere; by quality and the scene's
@@ -79,6 +83,8 @@ struct Method {
 /// All named methods. Lookups by name: errors are not_found and list the names there are.
 std::span<const Method> methods();
 const Method& method_named(std::string_view name);
+/// The named method of a pair, or "VISIBILITY+SOLUTION" where no method pairs them.
+std::string method_name(Visibility visibility, Solution solution);
 Visibility visibility_named(std::string_view name);
 Solution solution_named(std::string_view name);
 Quality quality_named(std::string_view name);

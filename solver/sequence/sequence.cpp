@@ -10,6 +10,7 @@
 #include "solver/base/stopwatch.h"
 #include "solver/image/tone_map.h"
 #include "solver/sequence/asked_error.h"
+#include "solver/sequence/choose.h"
 #include "solver/sequence/frame_refinement.h"
 #include "solver/sequence/prepare.h"
 #include "solver/sequence/quality.h"
@@ -28,6 +29,8 @@ constexpr int exposure_picture_height = 90;
 
 std::unique_ptr<VisibilityStrategy> make_strategy(const SequenceState::Parts& parts) {
     switch (parts.config.visibility) {
+        case Visibility::automatic:
+            break;
         case Visibility::retrace:
             return make_retrace();
         case Visibility::back_buffer:
@@ -158,6 +161,11 @@ SequenceState make_state(World world, const SequenceConfig& config, const Contex
     const Stopwatch watch;
     check(config);
     auto parts = std::make_unique<SequenceState::Parts>(std::move(world), config);
+    MethodChoice choice = choose_method(parts->world, config);
+    parts->config.visibility = choice.visibility;
+    parts->config.solution = choice.solution;
+    parts->statistics.method = method_name(choice.visibility, choice.solution);
+    parts->statistics.method_reason = std::move(choice.reason);
     parts->camera = find_camera(parts->world, config.camera);
     parts->strategy = make_strategy(*parts);
     warn_of_fine_error(*parts);
@@ -213,7 +221,9 @@ std::vector<FrameStatistics> render_sequence(World world, const SequenceConfig& 
                                              const Context& context) {
     if (first_frame < 0 || last_frame < first_frame)
         throw Error(ErrorKind::invalid_input, "frames", "must be a range A-B with 0 <= A <= B");
-    SequenceState state = make_state(std::move(world), config, context.part(0, 0.05));
+    SequenceConfig with_range = config;
+    with_range.frames_expected = last_frame - first_frame + 1;
+    SequenceState state = make_state(std::move(world), with_range, context.part(0, 0.05));
     std::vector<FrameStatistics> frames;
     const double count = last_frame - first_frame + 1.0;
     for (int f = first_frame; f <= last_frame; ++f) {

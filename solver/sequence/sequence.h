@@ -32,6 +32,8 @@ struct FrameStatistics {
 
 /// What the whole job cost before its frames.
 struct SequenceStatistics {
+    std::string method;               ///< as method_name has it
+    std::string method_reason;        ///< why, where the settings left it to the scene
     std::uint64_t patches = 0;        ///< all
     std::uint64_t actor_patches = 0;  ///< of them, on actors
     std::uint64_t sight_lines = 0;

@@ -102,9 +102,6 @@ void compare(Room& room, double asked, int frames, const Context& context) {
     Stages ours, full;
     ResidualConfig residual;
     residual.asked_error = asked;
-    if (std::getenv("PS")) residual.push_share = std::atof(std::getenv("PS"));
-    if (std::getenv("LS")) residual.least_share = std::atof(std::getenv("LS"));
-    if (std::getenv("RB")) residual.rounds_between_surveys = std::atoi(std::getenv("RB"));
     ProgressiveConfig progressive;
     progressive.asked_error = asked;
     std::vector<double> pushes, rounds, sweeps, changes, error, full_error;

@@ -121,9 +121,13 @@ class Frames(Case):
         self.assertEqual(self.bytes_of("several")["frame_0006.exr"], self.bytes_of("alone")["frame_0006.exr"])
 
     def test_every_method_renders(self):
-        for method in ("full", "baum86", "events"):
+        for method in ("full", "baum86", "events", "auto"):
             self.render("--frames", "2", "--method", method, "--out", method, "--report", f"{method}.json")
-            self.assertEqual(json.loads((self.folder / f"{method}.json").read_text())["method"], method)
+            # A single frame has nothing to reuse.
+            used = "full" if method == "auto" else method
+            report = json.loads((self.folder / f"{method}.json").read_text())
+            self.assertEqual(report["method"], used)
+            self.assertEqual(report["method_reason"] != "", method == "auto")
 
     def test_older_frames_are_replaced_and_other_files_stay(self):
         (self.folder / "out").mkdir()

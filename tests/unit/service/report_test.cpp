@@ -25,7 +25,7 @@ std::vector<std::string> keys(const Json& object) {
 TEST(Report, HasTheFieldsOfTheContractInOrder) {
     Report report;
     report.scene = "room.glb";
-    report.method = "full";
+    report.sequence.method = "full";
     report.load = Milliseconds(1.5);
     report.sequence.patches = 10;
     FrameStatistics frame;
@@ -41,7 +41,7 @@ TEST(Report, HasTheFieldsOfTheContractInOrder) {
     const Json json = to_json(report, 12.5);
     EXPECT_EQ(keys(json), (std::vector<std::string>{"scene", "method", "patches", "actor_patches",
                                                     "sight_lines", "rays_per_patch", "load_ms", "static_ms",
-                                                    "precompute", "peak_rss_mb", "frames"}));
+                                                    "precompute", "peak_rss_mb", "frames", "method_reason"}));
     EXPECT_EQ(keys(json["frames"][0]),
               (std::vector<std::string>{"frame", "ms", "rays_traced", "visibility_changes", "shots",
                                         "active_patches", "residual", "error_bound", "picture_error",
@@ -62,18 +62,6 @@ TEST(Report, HasTheFieldsOfTheContractInOrder) {
 
 TEST(Report, WithoutFramesIsStillAList) {
     EXPECT_EQ(to_json(Report(), 0)["frames"], Json::array());
-}
-
-TEST(MethodName, IsThePairWhereNoMethodHasIt) {
-    for (const Method& method : methods()) {
-        SequenceConfig config;
-        config.visibility = method.visibility;
-        config.solution = method.solution;
-        EXPECT_EQ(method_name(config), method.name);
-    }
-    SequenceConfig strange;
-    strange.visibility = static_cast<Visibility>(99);
-    EXPECT_EQ(method_name(strange), "unknown+progressive");
 }
 
 TEST(PeakMemory, CoversWhatWasTouched) {

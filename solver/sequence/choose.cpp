@@ -1,0 +1,43 @@
+#include "solver/sequence/choose.h"
+
+#include <algorithm>
+
+namespace afterglow {
+
+namespace {
+
+// Looking ahead pays from about this many frames on (solver/visibility/README.md).
+constexpr int frames_worth_events = 8;
+
+MethodChoice choose_freely(const World& world, int frames) {
+    // The first body is the furniture.
+    const auto movers = std::count_if(world.bodies.begin() + 1, world.bodies.end(), [](const Body& body) {
+        return std::any_of(body.path.keys.begin(), body.path.keys.end(),
+                           [&](const Key<Pose>& key) { return key.value != body.path.keys.front().value; });
+    });
+    if (frames == 1)
+        return {Visibility::retrace, Solution::progressive, "a single frame has nothing to reuse"};
+    if (movers == 0)
+        return {Visibility::back_buffer, Solution::residual,
+                "nothing moves, so all lines are traced once and no temporal structure is built"};
+    const std::string actors = std::to_string(movers) + (movers == 1 ? " actor" : " actors");
+    if (frames > 0 && frames < frames_worth_events)
+        return {Visibility::back_buffer, Solution::residual,
+                actors + " but few frames: looking ahead for events would cost more than it saves"};
+    return {Visibility::events, Solution::residual,
+            actors + ": what lines come to see is found ahead, and only what changes is solved"};
+}
+
+}  // namespace
+
+MethodChoice choose_method(const World& world, const SequenceConfig& config) {
+    const bool both_named =
+        config.visibility != Visibility::automatic && config.solution != Solution::automatic;
+    if (both_named) return {config.visibility, config.solution, {}};
+    MethodChoice choice = choose_freely(world, config.frames_expected);
+    if (config.visibility != Visibility::automatic) choice.visibility = config.visibility;
+    if (config.solution != Solution::automatic) choice.solution = config.solution;
+    return choice;
+}
+
+}  // namespace afterglow

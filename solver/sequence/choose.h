@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "solver/scene/world.h"
+#include "solver/sequence/config.h"
+
+namespace afterglow {
+
+/// A visibility and a solution, and why.
+struct MethodChoice {
+    Visibility visibility = Visibility::retrace;
+    Solution solution = Solution::progressive;
+    std::string reason;  ///< a sentence for people; empty where both were asked for by name
+};
+
+/// Fills in what the settings leave to the scene, so that no more is built than pays: nothing that outlasts a
+/// frame for a single one, no temporal structure where nothing moves, no events ahead for a few frames.
+/// Thread-safety: pure.
+MethodChoice choose_method(const World& world, const SequenceConfig& config);
+
+}  // namespace afterglow
