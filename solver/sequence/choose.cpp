@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "solver/base/error.h"
+#include "solver/visibility/events.h"
+
 namespace afterglow {
 
 namespace {
@@ -38,6 +41,23 @@ MethodChoice choose_method(const World& world, const SequenceConfig& config) {
     if (config.visibility != Visibility::automatic) choice.visibility = config.visibility;
     if (config.solution != Solution::automatic) choice.solution = config.solution;
     return choice;
+}
+
+std::unique_ptr<VisibilityStrategy> make_strategy(Visibility visibility, const World& world,
+                                                  const FrameClock& clock) {
+    switch (visibility) {
+        case Visibility::automatic:
+            break;
+        case Visibility::retrace:
+            return make_retrace();
+        case Visibility::back_buffer:
+            return make_back_buffer();
+        case Visibility::temporal_graph:
+            return make_temporal_graph(world, clock);
+        case Visibility::events:
+            return make_events(world, clock);
+    }
+    throw Error(ErrorKind::invalid_input, "visibility", "is not one of the strategies there are");
 }
 
 }  // namespace afterglow

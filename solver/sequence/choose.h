@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "solver/scene/world.h"
 #include "solver/sequence/config.h"
+#include "solver/visibility/strategy.h"
 
 namespace afterglow {
 
@@ -18,5 +20,10 @@ struct MethodChoice {
 /// frame for a single one, no temporal structure where nothing moves, no events ahead for a few frames.
 /// Thread-safety: pure.
 MethodChoice choose_method(const World& world, const SequenceConfig& config);
+
+/// A strategy that knows nothing yet. Keeps a reference to the world. Errors: invalid_input for
+/// Visibility::automatic, which must have been chosen for.
+std::unique_ptr<VisibilityStrategy> make_strategy(Visibility visibility, const World& world,
+                                                  const FrameClock& clock);
 
 }  // namespace afterglow

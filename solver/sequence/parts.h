@@ -25,6 +25,7 @@ struct SequenceState::Parts {
     SequenceConfig config;
     PlacedCamera camera;
     RayCaster caster;
+    SideMask reached;  ///< the sides that have patches
     PatchMesh mesh;
     std::optional<Interpolation> interpolation;
     std::optional<SmoothNormals> normals;
@@ -51,6 +52,7 @@ struct SequenceState::Parts {
         return config.frames_per_second > 0 ? config.frames_per_second : world.frames_per_second;
     }
     [[nodiscard]] double time_of(int frame) const { return frame / frames_per_second(); }
+    [[nodiscard]] FrameClock clock() const { return {frames_per_second()}; }
     [[nodiscard]] LineScene lines(int frame) const {
         return {mesh, *sight, *light, caster, background, frame};
     }

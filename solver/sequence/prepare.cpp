@@ -66,21 +66,30 @@ PlacedCamera find_camera(const World& world, const std::string& name) {
 
 namespace {
 
+/// How far apart patches are expected to be before it is known which sides get any.
+float first_guess_m(const SequenceState::Parts& parts) {
+    if (const auto asked = parts.config.patch_size_m) return static_cast<float>(*asked);
+    return std::sqrt(area_of_all(parts.world) / level_of(parts.config).cells);
+}
+
+SideMask find_reached(SequenceState::Parts& parts, const Surfaces& surfaces, const Context& context) {
+    ReachConfig reach;
+    reach.spacing_m = first_guess_m(parts);
+    reach.seed = parts.config.seed;
+    return reachable_sides(parts.world, surfaces, parts.caster, reach, context);
+}
+
 /// Patches for the sides that light can reach: even ones of the asked size, or as fine as they must be.
 PatchMesh mesh_reached(SequenceState::Parts& parts, const Context& context) {
     const World& world = parts.world;
     const QualityLevel level = level_of(parts.config);
-    const auto size_for = [&](float area) { return std::sqrt(area / level.cells); };
     const auto asked = parts.config.patch_size_m;
-    const float first_guess = asked ? static_cast<float>(*asked) : size_for(area_of_all(world));
-    const Surfaces surfaces = find_surfaces(world, {.facet_size_m = first_guess});
-    ReachConfig reach;
-    reach.spacing_m = first_guess;
-    reach.seed = parts.config.seed;
-    const SideMask reached = reachable_sides(world, surfaces, parts.caster, reach, context);
+    const Surfaces surfaces = find_surfaces(world, {.facet_size_m = first_guess_m(parts)});
+    parts.reached = find_reached(parts, surfaces, context);
     MeshConfig mesh;
-    mesh.patch_size_m = asked ? first_guess : size_for(reached_area(surfaces, reached));
-    if (asked || level.finest_share >= 1) return make_patches(world, surfaces, reached, mesh, context);
+    mesh.patch_size_m =
+        asked ? first_guess_m(parts) : std::sqrt(reached_area(surfaces, parts.reached) / level.cells);
+    if (asked || level.finest_share >= 1) return make_patches(world, surfaces, parts.reached, mesh, context);
 
     parts.caster.set_poses(poses_at(world, 0));
     CoarsenessConfig coarseness;
@@ -88,8 +97,8 @@ PatchMesh mesh_reached(SequenceState::Parts& parts, const Context& context) {
     coarseness.seed = parts.config.seed;
     // A hair less, so that halving a whole number of times reaches it.
     mesh.finest_m = 0.999F * level.finest_share * mesh.patch_size_m;
-    mesh.is_too_coarse = Coarseness(parts.caster, surfaces, reached, lift_for(world), coarseness);
-    return make_patches(world, surfaces, reached, mesh, context);
+    mesh.is_too_coarse = Coarseness(parts.caster, surfaces, parts.reached, lift_for(world), coarseness);
+    return make_patches(world, surfaces, parts.reached, mesh, context);
 }
 
 }  // namespace
@@ -105,13 +114,25 @@ void mesh_world(SequenceState::Parts& parts, const Context& context) {
     parts.lamps = find_lamps(world, parts.mesh);
     const Index rays = rounded_up(level_of(parts.config).rays_per_patch);
     parts.sight.emplace(parts.mesh, world, rays, parts.config.seed);
-    const Index light_lines = std::clamp(rays / 4, Index{16}, Index{256});
-    parts.light.emplace(parts.mesh, *parts.sight, parts.lamps, light_lines, mixed(parts.config.seed));
-    parts.visible = make_visible_lines(parts.mesh, *parts.sight, *parts.light);
+    lay_light_lines(parts);
     parts.statistics.patches = parts.mesh.size();
     parts.statistics.actor_patches = parts.mesh.size() - parts.mesh.static_size();
-    parts.statistics.sight_lines = parts.visible.patch.size() + parts.visible.light_contribution.size();
     parts.statistics.rays_per_patch = static_cast<int>(rays);
+}
+
+bool reaches_more(SequenceState::Parts& parts, const Context& context) {
+    const SideMask now = find_reached(parts, parts.mesh.surfaces, context);
+    for (std::size_t surface = 0; surface < now.size(); ++surface)
+        for (const std::size_t side : {0U, 1U})
+            if (now[surface][side] && !parts.reached[surface][side]) return true;
+    return false;
+}
+
+void lay_light_lines(SequenceState::Parts& parts) {
+    const Index light_lines = std::clamp(parts.sight->lines_per_patch() / 4, Index{16}, Index{256});
+    parts.light.emplace(parts.mesh, *parts.sight, parts.lamps, light_lines, mixed(parts.config.seed));
+    parts.visible = make_visible_lines(parts.mesh, *parts.sight, *parts.light);
+    parts.statistics.sight_lines = parts.visible.patch.size() + parts.visible.light_contribution.size();
 }
 
 std::uint64_t advance_static_pass(SequenceState::Parts& parts, Index directions, const Context& context) {

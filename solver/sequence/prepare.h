@@ -10,6 +10,12 @@ void check(const SequenceConfig& config);
 /// Chooses the sides that get patches, divides them, lays the lines and finds the lamps.
 void mesh_world(SequenceState::Parts& parts, const Context& context);
 
+/// Whether light, as the world now is, reaches sides that got no patches when it was meshed.
+bool reaches_more(SequenceState::Parts& parts, const Context& context);
+
+/// Lays the lines to the lamps that were found.
+void lay_light_lines(SequenceState::Parts& parts);
+
 /// The camera of a given name, the first one for an empty name. Errors: not_found, listing the names.
 PlacedCamera find_camera(const World& world, const std::string& name);
 

@@ -14,7 +14,6 @@
 #include "solver/sequence/frame_refinement.h"
 #include "solver/sequence/prepare.h"
 #include "solver/sequence/quality.h"
-#include "solver/visibility/events.h"
 
 namespace afterglow {
 
@@ -26,22 +25,6 @@ constexpr Index exposure_look = 16;
 constexpr double coarse_error = 0.5;
 // Side of the picture that the automatic exposure is taken from.
 constexpr int exposure_picture_height = 90;
-
-std::unique_ptr<VisibilityStrategy> make_strategy(const SequenceState::Parts& parts) {
-    switch (parts.config.visibility) {
-        case Visibility::automatic:
-            break;
-        case Visibility::retrace:
-            return make_retrace();
-        case Visibility::back_buffer:
-            return make_back_buffer();
-        case Visibility::temporal_graph:
-            return make_temporal_graph(parts.world, FrameClock{parts.frames_per_second()});
-        case Visibility::events:
-            return make_events(parts.world, FrameClock{parts.frames_per_second()});
-    }
-    throw Error(ErrorKind::invalid_input, "visibility", "is not one of the strategies there are");
-}
 
 /// Fixed over a job, so that frames do not pump, and taken from time 0 whichever frame comes first, so that
 /// parts of an animation computed apart fit together.
@@ -167,7 +150,7 @@ SequenceState make_state(World world, const SequenceConfig& config, const Contex
     parts->statistics.method = method_name(choice.visibility, choice.solution);
     parts->statistics.method_reason = std::move(choice.reason);
     parts->camera = find_camera(parts->world, config.camera);
-    parts->strategy = make_strategy(*parts);
+    parts->strategy = make_strategy(choice.visibility, parts->world, parts->clock());
     warn_of_fine_error(*parts);
     mesh_world(*parts, context);
     parts->statistics.setup = watch.elapsed();
