@@ -38,7 +38,9 @@ double mean_reflected(const RadiosityProblem& problem, std::span<const Rgb> irra
         all.add(problem.area[i], reflected);
         if (max_channel(problem.emission[i]) <= 0) others.add(problem.area[i], reflected);
     }
-    return others.largest_channel() > 0 ? others.largest_channel() : all.largest_channel();
+    // What rounding leaves of light that was taken away is none.
+    const bool others_are_lit = others.largest_channel() > gather_rounding * all.largest_channel();
+    return others_are_lit ? others.largest_channel() : all.largest_channel();
 }
 
 Certificate make_certificate(double residual, double gain, double reflected) {
