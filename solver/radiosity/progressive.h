@@ -17,8 +17,9 @@ namespace afterglow {
 /// How a solution ends.
 enum class Finish {
     sweep,  ///< a last sweep over all rows confirms the certificate and forgets all rounding: for cold starts
-    bound,  ///< the counted rounding does: for small changes, so that the cost follows the change. A sweep is
-            ///< made only where rounding takes a tenth of what was asked
+    bound,  ///< the counted rounding does: for small changes, so that the cost follows the change. Patches
+            ///< with so little unshot light that the promise does not need it keep it, and a sweep is made
+            ///< only for large batches and where rounding takes a tenth of what was asked
 };
 
 /// How far and how to solve.

@@ -140,6 +140,14 @@ bool is_rounding_heavy(const ProgressiveState& state, const Survey& now, double 
            state.rounding > 2 * gather_rounding * static_cast<double>(now.reflected);
 }
 
+/// Unshot light, W/m², that a patch may keep: with no more anywhere, the bound is met.
+float allowed_unshot(const ProgressiveState& state, const Survey& now, double asked_error) {
+    const double gain = state.enclosure.gain;
+    const double promise = asked_error * (1 - gain) * now.mean - state.rounding;
+    // A little less, since the mean that it is relative to may still fall.
+    return gain > 0 ? static_cast<float>(0.9 * std::max(promise, 0.0) / gain) : 0;
+}
+
 /// One run of batches under one configuration.
 struct Shooting {
     const RadiosityProblem& problem;
@@ -161,7 +169,9 @@ Survey Shooting::make_batch(ProgressiveState& state, const Survey& before) const
     if ((config.finish == Finish::sweep && is_met(before)) || before.only_rounding) state.polishing = true;
     bool swept = state.polishing || is_rounding_heavy(state, before, config.asked_error);
     if (!swept) {
-        const std::vector<Index> patches = choice.next(state.unshot, active);
+        const float least =
+            config.finish == Finish::bound ? allowed_unshot(state, before, config.asked_error) : 0;
+        const std::vector<Index> patches = choice.next(state.unshot, active, least);
         swept = patches.empty() || (config.order != ShootingOrder::largest_first &&
                                     is_large(patches, columns, config.sweep_share));
         if (!swept) shoot_batch(state, problem, columns, patches, active, context);

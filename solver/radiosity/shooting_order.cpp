@@ -30,8 +30,7 @@ ShooterChoice::ShooterChoice(ShootingOrder order, const RadiosityProblem& proble
     least_weight_ = 0.01F * max_channel(reflected_by_seen_);
 }
 
-double ShooterChoice::contribution(const Rgb& unshot, std::size_t patch) const {
-    Rgb light = glm::abs(unshot);
+double ShooterChoice::contribution(Rgb light, std::size_t patch) const {
     const double area = problem_.area[patch];
     if (order_ == ShootingOrder::estimated) {
         Rgb weight = reflected_by_seen_;
@@ -48,15 +47,20 @@ int ShooterChoice::rank(std::size_t patch) const {
     return roles_.is_moving(patch) && max_channel(problem_.reflectance[patch]) >= high_reflectance ? 0 : 1;
 }
 
-std::vector<Index> ShooterChoice::next(std::span<const Rgb> unshot,
-                                       std::span<const std::uint8_t> active) const {
+std::vector<Index> ShooterChoice::next(std::span<const Rgb> unshot, std::span<const std::uint8_t> active,
+                                       float least) const {
+    // Below 0 for patches that are not to be chosen.
+    const auto contributed = [&](std::size_t i) {
+        const Rgb light = glm::abs(unshot[i]);
+        const bool may_shoot = (active.empty() || active[i] != 0) && max_channel(light) > least;
+        return may_shoot ? contribution(light, i) : -1.0;
+    };
     double largest = 0;
     std::size_t first = 0;
     for (std::size_t i = 0; i < unshot.size(); ++i) {
-        if (!active.empty() && active[i] == 0) continue;
-        const double contributed = contribution(unshot[i], i);
-        if (contributed <= largest) continue;
-        largest = contributed;
+        const double power = contributed(i);
+        if (power <= largest) continue;
+        largest = power;
         first = i;
     }
     std::vector<Index> patches;
@@ -65,8 +69,7 @@ std::vector<Index> ShooterChoice::next(std::span<const Rgb> unshot,
 
     int best_rank = rank(first);
     for (std::size_t i = 0; i < unshot.size(); ++i) {
-        if (!active.empty() && active[i] == 0) continue;
-        if (contribution(unshot[i], i) < 0.5 * largest || rank(i) > best_rank) continue;
+        if (contributed(i) < 0.5 * largest || rank(i) > best_rank) continue;
         if (rank(i) < best_rank) {
             best_rank = rank(i);
             patches.clear();

@@ -35,13 +35,14 @@ class ShooterChoice {
   public:
     ShooterChoice(ShootingOrder order, const RadiosityProblem& problem, const PatchRoles& roles);
 
-    /// The next batch in index order, among the patches for which `active` is not 0 (empty: all). Empty only
-    /// where nothing is left to shoot.
-    [[nodiscard]] std::vector<Index> next(std::span<const Rgb> unshot,
-                                          std::span<const std::uint8_t> active) const;
+    /// The next batch in index order, among the patches for which `active` is not 0 (empty: all) and whose
+    /// |ΔB| is above `least`, W/m². Empty only where there are none.
+    [[nodiscard]] std::vector<Index> next(std::span<const Rgb> unshot, std::span<const std::uint8_t> active,
+                                          float least = 0) const;
 
   private:
-    [[nodiscard]] double contribution(const Rgb& unshot, std::size_t patch) const;
+    /// Of |ΔB|, in W.
+    [[nodiscard]] double contribution(Rgb light, std::size_t patch) const;
     [[nodiscard]] int rank(std::size_t patch) const;
 
     ShootingOrder order_;

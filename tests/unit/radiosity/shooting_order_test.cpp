@@ -37,6 +37,14 @@ TEST(ShootingOrder, LeavesOutWhoTakesNoPart) {
     EXPECT_THAT(next(ShootingOrder::largest_first, unshot, {}, active), ElementsAre(2));
 }
 
+TEST(ShootingOrder, LeavesOutWhoHasTooLittle) {
+    const OwnedProblem cube = test::unit_cube(0.5F);
+    const ShooterChoice choice(ShootingOrder::threshold_scan, cube.view(), {});
+    const std::vector<Rgb> unshot{Rgb(1), Rgb(-1.5F), Rgb(.9F), Rgb(1.1F), Rgb(0), Rgb(0)};
+    EXPECT_THAT(choice.next(unshot, {}, 1), ElementsAre(1, 3));
+    EXPECT_THAT(choice.next(unshot, {}, 2), IsEmpty());
+}
+
 TEST(ShootingOrder, IsEmptyOnlyWhereNothingIsLeft) {
     const std::vector<std::uint8_t> hidden(6, 0);
     for (const ShootingOrder order : all_orders) {
