@@ -77,9 +77,10 @@ ProgressiveState make_progressive_state(const RadiosityProblem& problem, const C
 /// Shoots until the certificate is met (status converged), nothing but rounding is left (exhausted), or
 /// `config.max_shots` more shots were made. A finished state returns at once. Loop on `status`.
 /// Returns the certificate of E + ρH from the bound ‖r‖∞ ≤ g ‖ΔB‖∞ + rounding: r = ρ (F ΔB − ε), with ε the
-/// rounding that the state counts batch by batch. `columns` must be columns_of(problem.form_factors), the
-/// problem that of the state. Same bits for any number of threads and any division into calls. Source: Cohen
-/// et al. 1988, section 3. Errors: invalid_input; cancelled leaves a consistent state.
+/// rounding that the state counts batch by batch. Irradiance below 10⁻²⁰ of the brightest light is taken as
+/// none. `columns` must be columns_of(problem.form_factors), the problem that of the state. Same bits for any
+/// number of threads and any division into calls. Source: Cohen et al. 1988, section 3. Errors:
+/// invalid_input; cancelled leaves a consistent state.
 Certificate step(ProgressiveState& state, const RadiosityProblem& problem, const FormFactorColumns& columns,
                  const ProgressiveConfig& config, const Context& context);
 

@@ -59,9 +59,27 @@ double rounding_of(std::size_t patches, double gain, double shot, double reflect
     return unit * ((1 + gain) * (sums + reflected) + gain * (gain * shot + unshot));
 }
 
+/// Light below this share of the brightest is none. Where all that was reflected is taken away, sweeps would
+/// else chase what rounding left of it into the smallest numbers, with nothing to measure it by.
+constexpr float darkness = 1e-20F;
+
+float darkest_light(const RadiosityProblem& problem) {
+    float brightest = 0;
+    for (std::size_t i = 0; i < problem.patches(); ++i)
+        brightest = std::max(brightest, max_channel(problem.emission[i] + problem.external(i)));
+    return darkness * brightest;
+}
+
+Rgb without_darkness(const Rgb& irradiance, float least) {
+    return {std::abs(irradiance.r) < least ? 0 : irradiance.r,
+            std::abs(irradiance.g) < least ? 0 : irradiance.g,
+            std::abs(irradiance.b) < least ? 0 : irradiance.b};
+}
+
 /// Sends the unshot light of some patches along their columns.
 void shoot_batch(ProgressiveState& state, const RadiosityProblem& problem, const FormFactorColumns& columns,
-                 const std::vector<Index>& patches, const Active& active, const Context& context) {
+                 const std::vector<Index>& patches, const Active& active, float darkest,
+                 const Context& context) {
     std::vector<Lanes> received(problem.patches());
     if (active.empty()) {
         shoot(columns, patches, state.unshot, received, context);
@@ -79,7 +97,7 @@ void shoot_batch(ProgressiveState& state, const RadiosityProblem& problem, const
     for (std::size_t i = 0; i < problem.patches(); ++i) {
         if (!takes_part(active, i)) continue;
         const Rgb irradiance = to_rgb(received[i]);
-        state.irradiance[i] += irradiance;
+        state.irradiance[i] = without_darkness(state.irradiance[i] + irradiance, darkest);
         state.unshot[i] += problem.reflectance[i] * irradiance;
         reflected = std::max(reflected, largest_magnitude(problem.reflectance[i] * state.irradiance[i]));
         unshot = std::max(unshot, largest_magnitude(state.unshot[i]));
@@ -91,7 +109,7 @@ void shoot_batch(ProgressiveState& state, const RadiosityProblem& problem, const
 /// Every patch that takes part shoots at once: its H becomes F B + H0 afresh, which also forgets the rounding
 /// of earlier batches, and what B gained by it is the new unshot light. Of the others arrives what they have
 /// shot before.
-void sweep(ProgressiveState& state, const RadiosityProblem& problem, const Active& active,
+void sweep(ProgressiveState& state, const RadiosityProblem& problem, const Active& active, float darkest,
            const Context& context) {
     const std::size_t patches = problem.patches();
     std::vector<Lanes> radiosity(patches);
@@ -111,7 +129,7 @@ void sweep(ProgressiveState& state, const RadiosityProblem& problem, const Activ
         const Index i = receivers[k];
         state.shots += state.unshot[i] != Rgb(0) ? 1 : 0;
         state.entries += problem.form_factors.row_begin[i + 1] - problem.form_factors.row_begin[i];
-        const Rgb irradiance = to_rgb(received[k]) + problem.external(i);
+        const Rgb irradiance = without_darkness(to_rgb(received[k]) + problem.external(i), darkest);
         state.unshot[i] = problem.reflectance[i] * (irradiance - state.irradiance[i]);
         state.irradiance[i] = irradiance;
         reflected = std::max(reflected, largest_magnitude(problem.reflectance[i] * irradiance));
@@ -155,6 +173,7 @@ struct Shooting {
     const ProgressiveConfig& config;
     Active active;
     ShooterChoice choice;
+    float darkest;  ///< see darkness
     const Context& context;
 
     [[nodiscard]] bool is_met(const Survey& now) const {
@@ -174,9 +193,9 @@ Survey Shooting::make_batch(ProgressiveState& state, const Survey& before) const
         const std::vector<Index> patches = choice.next(state.unshot, active, least);
         swept = patches.empty() || (config.order != ShootingOrder::largest_first &&
                                     is_large(patches, columns, config.sweep_share));
-        if (!swept) shoot_batch(state, problem, columns, patches, active, context);
+        if (!swept) shoot_batch(state, problem, columns, patches, active, darkest, context);
     }
-    if (swept) sweep(state, problem, active, context);
+    if (swept) sweep(state, problem, active, darkest, context);
 
     const Survey after = survey(state, problem, active);
     if (is_met(after) && (swept || config.finish == Finish::bound)) {
@@ -220,7 +239,9 @@ Certificate shoot_among(ProgressiveState& state, const RadiosityProblem& problem
     if (nothing_left || (met && state.status == ProgressiveStatus::running))
         state.status = ProgressiveStatus::converged;
     const std::uint64_t shots_before = state.shots;
-    const Shooting shooting{problem, columns, config, active, {config.order, problem, config.roles}, context};
+    const Shooting shooting{
+        problem, columns, config, active, {config.order, problem, config.roles}, darkest_light(problem),
+        context};
     Reporter reporter(config.asked_error, context);
     reporter.say(now.certificate.error_bound);
     while (state.status == ProgressiveStatus::running) {
