@@ -29,7 +29,7 @@ struct ActivePassiveConfig {
     std::size_t activations = 256;
     /// Shots after which a call returns, as in ProgressiveConfig.
     std::uint64_t max_shots = std::numeric_limits<std::uint64_t>::max();
-    ShootingOrder order = ShootingOrder::report;  ///< see ShootingOrder
+    ShootingOrder order = ShootingOrder::threshold_scan;  ///< see ShootingOrder
     double sweep_share = 0.25;  ///< of all entries, from which on a batch is a sweep; see ProgressiveConfig
 };
 

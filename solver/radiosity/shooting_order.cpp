@@ -49,18 +49,16 @@ int ShooterChoice::rank(std::size_t patch) const {
 
 std::vector<Index> ShooterChoice::next(std::span<const Rgb> unshot, std::span<const std::uint8_t> active,
                                        float least) const {
-    // Below 0 for patches that are not to be chosen.
-    const auto contributed = [&](std::size_t i) {
-        const Rgb light = glm::abs(unshot[i]);
-        const bool may_shoot = (active.empty() || active[i] != 0) && max_channel(light) > least;
-        return may_shoot ? contribution(light, i) : -1.0;
-    };
+    // Of patches that are not to be chosen: 0.
+    std::vector<double> contributed(unshot.size());
     double largest = 0;
     std::size_t first = 0;
     for (std::size_t i = 0; i < unshot.size(); ++i) {
-        const double power = contributed(i);
-        if (power <= largest) continue;
-        largest = power;
+        const Rgb light = glm::abs(unshot[i]);
+        if (max_channel(light) <= least || (!active.empty() && active[i] == 0)) continue;
+        contributed[i] = contribution(light, i);
+        if (contributed[i] <= largest) continue;
+        largest = contributed[i];
         first = i;
     }
     std::vector<Index> patches;
@@ -69,7 +67,7 @@ std::vector<Index> ShooterChoice::next(std::span<const Rgb> unshot, std::span<co
 
     int best_rank = rank(first);
     for (std::size_t i = 0; i < unshot.size(); ++i) {
-        if (contributed(i) < 0.5 * largest || rank(i) > best_rank) continue;
+        if (contributed[i] < 0.5 * largest || rank(i) > best_rank) continue;
         if (rank(i) < best_rank) {
             best_rank = rank(i);
             patches.clear();
