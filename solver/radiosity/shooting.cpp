@@ -158,12 +158,14 @@ bool is_rounding_heavy(const ProgressiveState& state, const Survey& now, double 
            state.rounding > 2 * gather_rounding * static_cast<double>(now.reflected);
 }
 
-/// Unshot light, W/m², that a patch may keep: with no more anywhere, the bound is met.
+/// Unshot light, W/m², that a patch may keep: with no more anywhere, the bound is met. Somewhat less, so that
+/// it does not waver with a mean that still falls and with rounding that grows: what was little enough once
+/// stays where it is, and a room in which nothing changes stays as it was.
 float allowed_unshot(const ProgressiveState& state, const Survey& now, double asked_error) {
     const double gain = state.enclosure.gain;
-    const double promise = asked_error * (1 - gain) * now.mean - state.rounding;
-    // A little less, since the mean that it is relative to may still fall.
-    return gain > 0 ? static_cast<float>(0.9 * std::max(promise, 0.0) / gain) : 0;
+    const double promise = asked_error * (1 - gain) * now.mean;
+    const double unshot = std::min(0.8 * promise, 0.9 * (promise - state.rounding));
+    return gain > 0 ? static_cast<float>(std::max(unshot, 0.0) / gain) : 0;
 }
 
 /// One run of batches under one configuration.
