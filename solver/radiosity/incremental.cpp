@@ -123,6 +123,14 @@ void resume(IncrementalState& state) {
 
 }  // namespace
 
+ProgressiveConfig following_config(double asked_error) {
+    ProgressiveConfig config;
+    config.asked_error = asked_error;
+    config.finish = Finish::bound;
+    config.batch_share = 1.0 / 16;
+    return config;
+}
+
 IncrementalState make_incremental_state(const RadiosityProblem& problem, const Context& context) {
     IncrementalState state{make_progressive_state(problem, context), copy_of(problem.emission),
                            copy_of(problem.reflectance), std::vector<Rgb>(problem.patches()),

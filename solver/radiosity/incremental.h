@@ -19,6 +19,10 @@ struct IncrementalState : ProgressiveState {
     std::vector<double> row_sum;                                  ///< Σ_j F_ij, by patch
 };
 
+/// How to step after a change: the counted rounding ends it, and a batch spans a factor of 16, since where
+/// little is to be shot the passes over all patches between batches cost the most.
+ProgressiveConfig following_config(double asked_error);
+
 /// Starts cold, as make_progressive_state, with the same errors.
 IncrementalState make_incremental_state(const RadiosityProblem& problem, const Context& context = Context(1));
 

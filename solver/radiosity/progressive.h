@@ -33,6 +33,10 @@ struct ProgressiveConfig {
     /// shoots, and the rows gather it in parallel. Above 1: only for the final check. See README.md for
     /// figures.
     double sweep_share = 0.25;
+    /// Patches shoot together that contribute at least this share of what the best one does, above 0 to 1. A
+    /// half is the factor of two of the orders; less makes fewer batches, each of which passes over all
+    /// patches.
+    double batch_share = 0.5;
     Finish finish = Finish::sweep;  ///< see Finish
     PatchRoles roles;               ///< for the orders that ask for them; they outlive the call
 };

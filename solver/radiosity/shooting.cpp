@@ -192,7 +192,7 @@ Survey Shooting::make_batch(ProgressiveState& state, const Survey& before) const
     if (!swept) {
         const float least =
             config.finish == Finish::bound ? allowed_unshot(state, before, config.asked_error) : 0;
-        const std::vector<Index> patches = choice.next(state.unshot, active, least);
+        const std::vector<Index> patches = choice.next(state.unshot, active, least, config.batch_share);
         swept = patches.empty() || (config.order != ShootingOrder::largest_first &&
                                     is_large(patches, columns, config.sweep_share));
         if (!swept) shoot_batch(state, problem, columns, patches, active, darkest, context);
@@ -258,6 +258,8 @@ void check_step(const ProgressiveState& state, const RadiosityProblem& problem,
                 const FormFactorColumns& columns, const ProgressiveConfig& config) {
     const std::size_t patches = problem.patches();
     if (!(config.asked_error > 0)) throw Error(ErrorKind::invalid_input, "asked error", "must be above 0");
+    if (!(config.batch_share > 0 && config.batch_share <= 1))
+        throw Error(ErrorKind::invalid_input, "batch share", "must be above 0, at most 1");
     if (state.irradiance.size() != patches || state.unshot.size() != patches)
         throw Error(ErrorKind::invalid_input, "state", "belongs to another problem");
     if (columns.column_begin.size() != patches + 1 || columns.row.size() != problem.form_factors.entries())

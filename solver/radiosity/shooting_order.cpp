@@ -48,7 +48,7 @@ int ShooterChoice::rank(std::size_t patch) const {
 }
 
 std::vector<Index> ShooterChoice::next(std::span<const Rgb> unshot, std::span<const std::uint8_t> active,
-                                       float least) const {
+                                       float least, double share) const {
     // Of patches that are not to be chosen: 0.
     std::vector<double> contributed(unshot.size());
     double largest = 0;
@@ -67,7 +67,7 @@ std::vector<Index> ShooterChoice::next(std::span<const Rgb> unshot, std::span<co
 
     int best_rank = rank(first);
     for (std::size_t i = 0; i < unshot.size(); ++i) {
-        if (contributed[i] < 0.5 * largest || rank(i) > best_rank) continue;
+        if (contributed[i] < share * largest || rank(i) > best_rank) continue;
         if (rank(i) < best_rank) {
             best_rank = rank(i);
             patches.clear();

@@ -13,7 +13,7 @@ namespace afterglow {
 /// Which patches shoot next. Unshot power is |ΔB| A in its largest channel, so that light in a single channel
 /// is never left behind, and light that is taken away counts as much as light that comes.
 enum class ShootingOrder {
-    threshold_scan,  ///< all within a factor of two of the largest unshot power, as one batch in index order
+    threshold_scan,  ///< all near the largest unshot power (a factor of two), as one batch in index order
     largest_first,   ///< the largest alone, found by a scan over all patches: Cohen's order, for comparison
     estimated,       ///< as threshold_scan, by Chen's estimate of what reaches the picture: see below
     report,          ///< Tost and Pueyo's: at equal unshot power visible before hidden: see below
@@ -36,9 +36,10 @@ class ShooterChoice {
     ShooterChoice(ShootingOrder order, const RadiosityProblem& problem, const PatchRoles& roles);
 
     /// The next batch in index order, among the patches for which `active` is not 0 (empty: all) and whose
-    /// |ΔB| is above `least`, W/m². Empty only where there are none.
+    /// |ΔB| is above `least`, W/m²: those that contribute at least `share` of what the best does. Empty only
+    /// where there are none.
     [[nodiscard]] std::vector<Index> next(std::span<const Rgb> unshot, std::span<const std::uint8_t> active,
-                                          float least = 0) const;
+                                          float least = 0, double share = 0.5) const;
 
   private:
     /// Of |ΔB|, in W.

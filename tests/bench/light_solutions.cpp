@@ -189,6 +189,7 @@ void compare_culling(const SolvedWorld& w, const Roles& known, const FormFactorC
 struct Following {
     const char* name;
     double sweep_share = 0.25;
+    double batch_share = 0.5;
     Finish finish = Finish::bound;
     std::vector<double> shots = {}, work = {}, change_ms = {}, solve_ms = {};
     IncrementalState state = {};
@@ -199,6 +200,7 @@ void follow(Following& f, const SolvedWorld& w, const FormFactorColumns& columns
     ProgressiveConfig config;
     config.finish = f.finish;
     config.sweep_share = f.sweep_share;
+    config.batch_share = f.batch_share;
     const std::uint64_t shots = f.state.shots;
     const std::uint64_t entries = f.state.entries;
     const double change_ms = ms_of([&] {
@@ -216,10 +218,11 @@ void follow(Following& f, const SolvedWorld& w, const FormFactorColumns& columns
 }
 
 void compare_following(SolvedWorld& w, int frames) {
-    Following ways[] = {{"cold", 0.25, Finish::sweep},
-                        {"incremental, a sweep a frame", 0.25, Finish::sweep},
-                        {"incremental, counted rounding", 0.25, Finish::bound},
-                        {"the same, never a sweep", 2, Finish::bound}};
+    Following ways[] = {{"cold", 0.25, 0.5, Finish::sweep},
+                        {"incremental, a sweep a frame", 0.25, 0.5, Finish::sweep},
+                        {"incremental, counted rounding", 0.25, 0.5, Finish::bound},
+                        {"the same, batches of 1/16", 0.25, 1.0 / 16, Finish::bound},
+                        {"the same, never a sweep", 2, 1.0 / 16, Finish::bound}};
     std::vector<double> changed, compare_ms;
     FormFactorMatrix before = w.factors.matrix;
     for (int frame = 0; frame <= frames; ++frame) {

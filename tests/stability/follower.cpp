@@ -48,9 +48,11 @@ Certificate Follower::follow(const OwnedProblem& problem, std::span<const Index>
             change(state_, view, rows, roles_.view(), config, context_);
         certificate = step(state_, view, columns, roles_.view(), config, context_);
     } else {
-        ProgressiveConfig config;
-        config.asked_error = asked_error_;
-        config.finish = solving_ == Solving::incremental_shots ? Finish::bound : Finish::sweep;
+        ProgressiveConfig config = following_config(asked_error_);
+        if (solving_ != Solving::incremental_shots) {
+            config.finish = Finish::sweep;
+            config.batch_share = 0.5;
+        }
         IncrementalState& state = state_;
         if (first || solving_ == Solving::cold)
             state = make_incremental_state(view, context_);

@@ -295,6 +295,9 @@ TEST(Progressive, RejectsWhatDoesNotBelongTogether) {
     ProgressiveConfig config;
     config.asked_error = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW(step(state, problem.view(), problem.columns(), config, Context(1)), Error);
+    config = {};
+    config.batch_share = 0;
+    EXPECT_THROW(step(state, problem.view(), problem.columns(), config, Context(1)), Error);
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ TEST(ShootingOrder, LeavesOutWhoHasTooLittle) {
     const std::vector<Rgb> unshot{Rgb(1), Rgb(-1.5F), Rgb(.9F), Rgb(1.1F), Rgb(0), Rgb(0)};
     EXPECT_THAT(choice.next(unshot, {}, 1), ElementsAre(1, 3));
     EXPECT_THAT(choice.next(unshot, {}, 2), IsEmpty());
+    EXPECT_THAT(choice.next(unshot, {}, 0, 0.7), ElementsAre(1, 3));
 }
 
 TEST(ShootingOrder, IsEmptyOnlyWhereNothingIsLeft) {
