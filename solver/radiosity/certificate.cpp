@@ -28,10 +28,11 @@ void ReflectedMean::add(const ReflectedMean& other) {
     emitters_.add(other.emitters_);
 }
 double ReflectedMean::value() const {
-    if (const double mean = others_.largest_channel(); mean > 0) return mean;
     Sum all = others_;
     all.add(emitters_);
-    return all.largest_channel();
+    // What rounding leaves of light that was taken away is none.
+    const bool others_are_lit = others_.largest_channel() > gather_rounding * all.largest_channel();
+    return others_are_lit ? others_.largest_channel() : all.largest_channel();
 }
 
 double mean_reflected(const RadiosityProblem& problem, std::span<const Rgb> irradiance) {

@@ -19,9 +19,9 @@ struct Certificate {
 };
 
 /// What residuals are relative to, W/m²: the area-weighted mean of ρH over patches that do not emit, its
-/// largest channel. Where that is zero (everything emits, or all else is black) the mean over all patches;
-/// where that is zero too, 0: then nothing has been reflected yet, and a certificate says 0 if no light is
-/// left and infinity otherwise.
+/// largest channel. Where that is zero but for rounding (everything emits, or all else is black) the mean
+/// over all patches; where that is zero too, 0: then nothing has been reflected yet, and a certificate says 0
+/// if no light is left and infinity otherwise.
 double mean_reflected(const RadiosityProblem& problem, std::span<const Rgb> irradiance);
 
 /// The same from sums over some patches, added in a fixed order. In double, because thousands of small

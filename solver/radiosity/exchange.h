@@ -2,6 +2,7 @@
 
 // The two loops in which all solving time is spent: irradiance gathered by rows, light shot by columns.
 
+#include <cstdint>
 #include <span>
 
 #include "solver/base/context.h"
@@ -48,9 +49,18 @@ void gather(const FormFactorMatrix& matrix, std::span<const Lanes> radiosity, st
 /// Σ_j F_ij B_j of one row, before it is rounded to float.
 DoubleLanes gather_row(const FormFactorMatrix& matrix, std::size_t row, std::span<const Lanes> radiosity);
 
+/// The same sums for some rows only: `irradiance[k]` is that of row `rows[k]`.
+void gather_rows(const FormFactorMatrix& matrix, std::span<const Index> rows,
+                 std::span<const Lanes> radiosity, std::span<Lanes> irradiance, const Context& context);
+
 /// Adds F_ji ΔB_i to `irradiance[j]` for every receiver j of every shooting patch i, in the order given.
 /// `shot`: ΔB by patch, W/m². One thread: large batches are better gathered.
 void shoot(const FormFactorColumns& columns, std::span<const Index> patches, std::span<const Rgb> shot,
            std::span<Lanes> irradiance, const Context& context);
+
+/// The same for those receivers only for which `active` is not 0. Returns how many form factors were used.
+std::uint64_t shoot_to_active(const FormFactorColumns& columns, std::span<const Index> patches,
+                              std::span<const Rgb> shot, std::span<const std::uint8_t> active,
+                              std::span<Lanes> irradiance, const Context& context);
 
 }  // namespace afterglow

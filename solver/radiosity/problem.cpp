@@ -1,6 +1,7 @@
 #include "solver/radiosity/problem.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,32 +49,41 @@ void check(const RadiosityProblem& problem) {
     check_values(problem.external_irradiance, "external irradiance");
 }
 
-Enclosure enclosure_of(const RadiosityProblem& problem, const Context& context) {
-    struct Part {
-        double gain = 0, area = 0, seen = 0;
-    };
+std::vector<double> row_sums(const FormFactorMatrix& matrix, std::span<const Index> rows,
+                             const Context& context) {
     constexpr std::size_t chunk = 512;
-    const FormFactorMatrix& matrix = problem.form_factors;
-    std::vector<Part> parts((problem.patches() + chunk - 1) / chunk);
-    context.for_chunks(problem.patches(), chunk, [&](std::size_t first, std::size_t last) {
-        Part part;
-        for (std::size_t i = first; i < last; ++i) {
+    std::vector<double> sums(rows.size());
+    context.for_chunks(rows.size(), chunk, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) {
             double sum = 0;
-            for (std::uint64_t e = matrix.row_begin[i]; e < matrix.row_begin[i + 1]; ++e)
+            for (std::uint64_t e = matrix.row_begin[rows[k]]; e < matrix.row_begin[rows[k] + 1]; ++e)
                 sum += matrix.value[e];
-            part.gain = std::max(part.gain, static_cast<double>(max_channel(problem.reflectance[i])) * sum);
-            part.area += problem.area[i];
-            part.seen += problem.area[i] * sum;
+            sums[k] = sum;
         }
-        parts[first / chunk] = part;
     });
-    Part all;
-    for (const Part& part : parts) {
-        all.gain = std::max(all.gain, part.gain);
-        all.area += part.area;
-        all.seen += part.seen;
+    return sums;
+}
+
+std::vector<double> row_sums(const FormFactorMatrix& matrix, const Context& context) {
+    std::vector<Index> all(matrix.rows());
+    std::iota(all.begin(), all.end(), Index{0});
+    return row_sums(matrix, all, context);
+}
+
+Enclosure enclosure_of(const RadiosityProblem& problem, std::span<const double> row_sum) {
+    double gain = 0;
+    double area = 0;
+    double seen = 0;
+    for (std::size_t i = 0; i < problem.patches(); ++i) {
+        gain = std::max(gain, static_cast<double>(max_channel(problem.reflectance[i])) * row_sum[i]);
+        area += problem.area[i];
+        seen += problem.area[i] * row_sum[i];
     }
-    return {all.gain, all.area > 0 ? all.seen / all.area : 0};
+    return {gain, area > 0 ? seen / area : 0};
+}
+
+Enclosure enclosure_of(const RadiosityProblem& problem, const Context& context) {
+    return enclosure_of(problem, row_sums(problem.form_factors, context));
 }
 
 }  // namespace afterglow

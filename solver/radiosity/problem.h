@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "solver/base/context.h"
 #include "solver/base/math.h"
@@ -36,7 +37,13 @@ struct Enclosure {
     double closure = 0;  ///< area-weighted mean of Σ_j F_ij: 1 in a closed scene, less where light escapes
 };
 
-/// Sums the rows. Works in parallel; the same bits for any number of threads.
+/// Σ_j F_ij for some rows, or for all of them. Works in parallel; the same bits for any number of threads.
+std::vector<double> row_sums(const FormFactorMatrix& matrix, std::span<const Index> rows,
+                             const Context& context);
+std::vector<double> row_sums(const FormFactorMatrix& matrix, const Context& context);
+
+/// From the sums of all rows, or summing them first.
+Enclosure enclosure_of(const RadiosityProblem& problem, std::span<const double> row_sum);
 Enclosure enclosure_of(const RadiosityProblem& problem, const Context& context);
 
 }  // namespace afterglow

@@ -9,14 +9,17 @@
 #include "solver/formfactor/matrix.h"
 #include "solver/radiosity/certificate.h"
 #include "solver/radiosity/problem.h"
+#include "solver/radiosity/roles.h"
+#include "solver/radiosity/shooting_order.h"
 
 namespace afterglow {
 
-/// Which patches shoot next. Unshot power is |ΔB| A in its largest channel, so that light in a single channel
-/// is never left behind.
-enum class ShootingOrder {
-    threshold_scan,  ///< all within a factor of two of the largest, as one batch in index order
-    largest_first,   ///< the largest alone, found by a scan over all patches: Cohen's order, for comparison
+/// How a solution ends.
+enum class Finish {
+    sweep,  ///< a last sweep over all rows confirms the certificate and forgets all rounding: for cold starts
+    bound,  ///< the counted rounding does: for small changes, so that the cost follows the change. Patches
+            ///< with so little unshot light that the promise does not need it keep it, and a sweep is made
+            ///< only for large batches and where rounding takes a tenth of what was asked
 };
 
 /// How far and how to solve.
@@ -30,6 +33,12 @@ struct ProgressiveConfig {
     /// shoots, and the rows gather it in parallel. Above 1: only for the final check. See README.md for
     /// figures.
     double sweep_share = 0.25;
+    /// Patches shoot together that contribute at least this share of what the best one does, above 0 to 1. A
+    /// half is the factor of two of the orders; less makes fewer batches, each of which passes over all
+    /// patches.
+    double batch_share = 0.5;
+    Finish finish = Finish::sweep;  ///< see Finish
+    PatchRoles roles;               ///< for the orders that ask for them; they outlive the call
 };
 
 /// Where the solution stands.
@@ -47,14 +56,18 @@ struct PolishingRun {
 };
 
 /// A solution on its way. B = E + ρH is what is shown; H and not B is kept, so that ρ = 0 needs no division.
-/// Between steps H = F (B − unshot) + H0. In float, because a sum's many small terms are added up in double
-/// or in short runs before they meet the large value here, and each sweep computes H afresh.
+/// Between steps H = F (B − unshot) + H0 but for rounding. In float, because a sum's many small terms are
+/// added up in double or in short runs before they meet the large value here, and each sweep computes H
+/// afresh.
 struct ProgressiveState {
     std::vector<Rgb> irradiance;  ///< H, W/m², by patch
-    std::vector<Rgb> unshot;      ///< ΔB, W/m², by patch: light of B not yet sent out; may round to below 0
-    Enclosure enclosure;          ///< of the problem
-    std::uint64_t shots = 0;      ///< patches that have shot, over all batches
-    std::uint64_t sweeps = 0;     ///< batches that were made as sweeps
+    std::vector<Rgb> unshot;    ///< ΔB, W/m², by patch: light of B not yet sent out; below 0: sent too much
+    Enclosure enclosure;        ///< of the problem
+    std::uint64_t shots = 0;    ///< patches that have shot, over all batches
+    std::uint64_t sweeps = 0;   ///< batches that were made as sweeps
+    std::uint64_t entries = 0;  ///< form factors used, over all batches
+    /// Bound of ρ |H − F (B − unshot) − H0| over patches and channels, W/m²: what single precision has lost.
+    double rounding = 0;
     ProgressiveStatus status = ProgressiveStatus::running;  ///< see ProgressiveStatus
     bool polishing = false;  ///< only sweeps from here on: the certificate is near
     PolishingRun run;        ///< while polishing
@@ -67,11 +80,11 @@ ProgressiveState make_progressive_state(const RadiosityProblem& problem, const C
 
 /// Shoots until the certificate is met (status converged), nothing but rounding is left (exhausted), or
 /// `config.max_shots` more shots were made. A finished state returns at once. Loop on `status`.
-/// Returns the certificate of E + ρH from the bound ‖r‖∞ = ‖ρ F ΔB‖∞ ≤ g ‖ΔB‖∞, plus rounding. The state is
-/// only called converged after a sweep, when that bound is rigorous; before, the rounding of shot sums (some
-/// 10⁻⁵ of the residual) is left out. `columns` must be columns_of(problem.form_factors), the problem that of
-/// the state. Same bits for any number of threads and any division into calls. Source: Cohen et al. 1988,
-/// section 3. Errors: invalid_input; cancelled leaves a consistent state.
+/// Returns the certificate of E + ρH from the bound ‖r‖∞ ≤ g ‖ΔB‖∞ + rounding: r = ρ (F ΔB − ε), with ε the
+/// rounding that the state counts batch by batch. Irradiance below 10⁻²⁰ of the brightest light is taken as
+/// none. `columns` must be columns_of(problem.form_factors), the problem that of the state. Same bits for any
+/// number of threads and any division into calls. Source: Cohen et al. 1988, section 3. Errors:
+/// invalid_input; cancelled leaves a consistent state.
 Certificate step(ProgressiveState& state, const RadiosityProblem& problem, const FormFactorColumns& columns,
                  const ProgressiveConfig& config, const Context& context);
 

@@ -53,5 +53,37 @@ TEST(Exchange, ShootingAllPatchesEqualsGathering) {
             EXPECT_NEAR(shot[i].v[c], 1 + gathered[i].v[c], 80 * 2 * 0x1p-24);
 }
 
+TEST(Exchange, SomeRowsGatherWhatAllDo) {
+    const OwnedProblem problem = test::random_problem(4, 700, test::Closure::open, 0.9F);
+    std::vector<Lanes> light;
+    for (const Rgb& b : problem.reflectance) light.push_back(to_lanes(b));
+    std::vector<Lanes> all(700);
+    gather(problem.matrix, light, all, Context(1));
+    std::vector<Index> rows;
+    for (Index i = 699; i < 700; i -= 2) rows.push_back(i);
+    std::vector<Lanes> some(rows.size());
+    gather_rows(problem.matrix, rows, light, some, Context(2));
+    for (std::size_t k = 0; k < rows.size(); ++k) EXPECT_EQ(to_rgb(some[k]), to_rgb(all[rows[k]]));
+}
+
+TEST(Exchange, OnlyActivePatchesReceive) {
+    const OwnedProblem problem = test::random_problem(11, 80, test::Closure::open, 0.9F);
+    const FormFactorColumns columns = problem.columns();
+    std::vector<std::uint8_t> active(80);
+    std::uint64_t entries = 0;
+    for (std::size_t i = 0; i < 80; ++i) {
+        active[i] = i % 3 == 0 ? 1 : 0;
+        if (active[i] != 0) entries += problem.matrix.row_begin[i + 1] - problem.matrix.row_begin[i];
+    }
+    std::vector<Index> every(80);
+    std::iota(every.begin(), every.end(), 0U);
+    std::vector<Lanes> to_all(80);
+    std::vector<Lanes> to_some(80);
+    shoot(columns, every, problem.reflectance, to_all, Context(1));
+    EXPECT_EQ(shoot_to_active(columns, every, problem.reflectance, active, to_some, Context(1)), entries);
+    for (std::size_t i = 0; i < 80; ++i)
+        EXPECT_EQ(to_rgb(to_some[i]), active[i] != 0 ? to_rgb(to_all[i]) : Rgb(0));
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -75,6 +75,16 @@ OwnedProblem random_problem(std::uint32_t seed, std::size_t patches, Closure clo
     return problem;
 }
 
+RandomRoles::RandomRoles(std::uint32_t seed, std::size_t patches) {
+    std::mt19937 generator(seed + 77);
+    for (std::size_t i = 0; i < patches; ++i) {
+        seen.push_back(generator() % 2);
+        moving.push_back(generator() % 8 == 0);
+        surface.push_back(static_cast<Index>(generator() % (1 + patches / 3)));
+        object.push_back(surface.back() / 2);
+    }
+}
+
 double largest_error(const RadiosityProblem& problem, const std::vector<Rgb>& irradiance) {
     const auto exact = solve_radiosity(problem);
     double error = 0;

@@ -40,6 +40,16 @@ enum class Closure { closed, open };
 OwnedProblem random_problem(std::uint32_t seed, std::size_t patches, Closure closure,
                             float largest_reflectance);
 
+/// Random roles that own their data: half the patches seen, a few moving, a handful of objects and surfaces.
+class RandomRoles {
+  public:
+    RandomRoles(std::uint32_t seed, std::size_t patches);
+    [[nodiscard]] PatchRoles view() const { return {seen, moving, object, surface}; }
+
+    std::vector<std::uint8_t> seen, moving;
+    std::vector<Index> object, surface;
+};
+
 /// Largest |B̂ − B| over patches and channels, W/m², with B̂ = E + ρH and B from the dense solve.
 double largest_error(const RadiosityProblem& problem, const std::vector<Rgb>& irradiance);
 

@@ -43,7 +43,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values(CubeForm{.2F, 1.00961538598, .0480445445, .0480850173566},
                                      CubeForm{.5F, 1.09090909811, .181745826108, .181836268946},
                                      CubeForm{.8F, 1.55172415364, .689551070738, .689681193904}),
-                     testing::Values(ShootingOrder::threshold_scan, ShootingOrder::largest_first)));
+                     testing::Values(ShootingOrder::threshold_scan, ShootingOrder::largest_first,
+                                     ShootingOrder::estimated, ShootingOrder::report)));
 
 class Furnace : public testing::TestWithParam<float> {};
 
@@ -60,17 +61,28 @@ TEST_P(Furnace, IsUniform) {
 
 INSTANTIATE_TEST_SUITE_P(ClosedForm7, Furnace, testing::Values(.5F, .9F, .99F));
 
-TEST(Progressive, BothOrdersAgreeWithinTheirCertificates) {
+TEST(Progressive, AllOrdersAgreeWithinTheirCertificates) {
     for (std::uint32_t seed = 0; seed < 30; ++seed) {
         const OwnedProblem problem = test::random_problem(seed, 5 + seed, Closure::closed, 0.8F);
-        const auto scan = test::solve(problem, 1e-3, ShootingOrder::threshold_scan);
-        const auto first = test::solve(problem, 1e-3, ShootingOrder::largest_first);
+        const test::RandomRoles roles(seed, problem.area.size());
+        ProgressiveConfig config;
+        config.asked_error = 1e-3;
+        config.roles = roles.view();
+        const auto scan = test::solve(problem, 1e-3);
         const double scale = mean_reflected(problem.view(), scan.state.irradiance);
-        for (std::size_t i = 0; i < problem.area.size(); ++i)
-            for (int c = 0; c < 3; ++c)
-                EXPECT_NEAR(radiosity(problem, scan.state, i, c), radiosity(problem, first.state, i, c),
-                            2.01e-3 * scale)
-                    << "seed " << seed << ", patch " << i;
+        for (const auto order :
+             {ShootingOrder::largest_first, ShootingOrder::estimated, ShootingOrder::report})
+            for (const auto finish : {Finish::sweep, Finish::bound}) {
+                config.order = order;
+                config.finish = finish;
+                const auto other = solve_progressive(problem.view(), problem.columns(), config, Context(1));
+                EXPECT_EQ(other.state.status, ProgressiveStatus::converged);
+                for (std::size_t i = 0; i < problem.area.size(); ++i)
+                    for (int c = 0; c < 3; ++c)
+                        EXPECT_NEAR(radiosity(problem, scan.state, i, c),
+                                    radiosity(problem, other.state, i, c), 2.01e-3 * scale)
+                            << "seed " << seed << ", patch " << i;
+            }
     }
 }
 
@@ -282,6 +294,9 @@ TEST(Progressive, RejectsWhatDoesNotBelongTogether) {
     EXPECT_THROW(step(state, problem.view(), other.columns(), {}, Context(1)), Error);
     ProgressiveConfig config;
     config.asked_error = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(step(state, problem.view(), problem.columns(), config, Context(1)), Error);
+    config = {};
+    config.batch_share = 0;
     EXPECT_THROW(step(state, problem.view(), problem.columns(), config, Context(1)), Error);
 }
 
