@@ -1,8 +1,7 @@
 // Who wins where: each visibility strategy against the number of actors, their faces and their speed, on a
-// generated room of furniture with actors on seeded random paths. Sight lines and light lines of static
-// patches; the actors' own lines, which all strategies trace alike, are timed apart and taken off. CPU time
-// of one thread, all strategies of a scene next to each other. Prints CSV; visibility_families.py draws it.
-// Usage: visibility_families [most actors] [most seconds that one strategy may take in a scene]
+// generated room of furniture with actors on seeded random paths. Sight lines of static patches only, which
+// is where the strategies differ. CPU time of one thread, all strategies of a scene next to each other.
+// Prints CSV; visibility_families.py draws it. Usage: visibility_families [most actors]
 
 #include <algorithm>
 #include <cstdio>
@@ -10,9 +9,11 @@
 #include <ctime>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <random>
 
 #include "solver/visibility/events.h"
+#include "solver/visibility/line_events.h"
 #include "solver/visibility/reach.h"
 #include "tests/support/worlds.h"
 
@@ -21,7 +22,7 @@ namespace {
 
 constexpr int frames = 96;
 constexpr FrameClock frame_clock{24};
-constexpr Index lines_per_patch = 64, light_lines_per_patch = 16;
+constexpr Index lines_per_patch = 64;
 constexpr float patch_size_m = 0.35F;
 
 double ms_of(const std::function<void()>& work) {
@@ -93,100 +94,123 @@ World furnished_room(const Member& member) {
 
 /// A scene with its lines and what they see without actors.
 struct Scene {
+    Context context{1};
     World world;
     RayCaster caster;
     PatchMesh mesh;
-    Lamps lamps;
+    Lamps no_lamps;
     SightLines sight;
-    LightLines light;
+    LightLines no_light;
     StaticLines background;
-    Context context{1};
     double static_ms;
+    VisibleLines visible;
 
     explicit Scene(const Member& member)
         : world(furnished_room(member)),
           caster(world),
           mesh(meshed()),
-          lamps(find_lamps(world, mesh)),
+          no_lamps{{}, std::vector<Index>(mesh.size(), no_index), {}, {}},
           sight(mesh, world, lines_per_patch, 1),
-          light(mesh, sight, lamps, light_lines_per_patch, 2),
-          background(make_static_lines(mesh, sight, light)),
+          no_light(mesh, sight, no_lamps, 1, 2),
+          background(make_static_lines(mesh, sight, no_light)),
           static_ms(ms_of([&] {
-              extend_static_lines(background, mesh, sight, light, caster, lines_per_patch, context);
-          })) {}
+              extend_static_lines(background, mesh, sight, no_light, caster, lines_per_patch, context);
+          })),
+          visible(make_visible_lines(mesh, sight, no_light)) {}
 
     PatchMesh meshed() {
-        Surfaces surfaces = find_surfaces(world);
+        Surfaces surfaces = find_surfaces(world, {.facet_size_m = patch_size_m});
         const SideMask reached = reachable_sides(world, surfaces, caster, {}, context);
         return make_patches(world, std::move(surfaces), reached, {.patch_size_m = patch_size_m});
     }
     void stand_at(int frame) { caster.set_poses(poses_at(world, frame_clock.time_of(frame))); }
-
-    /// The actors' own lines in the frame where they stand.
-    double own_lines_ms(VisibleLines& visible) {
-        return ms_of([&] {
-            trace_lines(sight, mesh, caster, Scope::everything,
-                        {sight.static_blocks(), sight.blocks().size(), 0, lines_per_patch},
-                        {visible.patch, {}}, context);
-            trace_moving_light_lines(light, sight, mesh, caster, visible.light_contribution, context);
-        });
+    void trace(std::size_t first_block, std::size_t last_block) {
+        trace_lines(sight, mesh, caster, Scope::everything, {first_block, last_block, 0, lines_per_patch},
+                    {visible.patch, {}}, context);
     }
+};
+
+void retrace(Scene& scene, int) {
+    scene.trace(0, scene.sight.static_blocks());
+}
+
+void back_buffer(Scene& scene, int) {
+    trace_over_background(scene.sight, scene.mesh, scene.caster, scene.background.background,
+                          {0, lines_per_patch}, scene.visible.patch, scene.context);
+}
+
+/// What `events` does about static patches' sight lines.
+class Events {
+  public:
+    explicit Events(const Scene& scene) : trees_(make_actor_trees(scene.world)) {}
+
+    void operator()(Scene& scene, int frame) {
+        if (!window_ || !window_->contains(frame)) {
+            window_ = event_window(frame, 0, {});
+            const SweptActors actors(scene.world, trees_, frame_clock, *window_);
+            const EventScene in{scene.world,      scene.mesh, scene.sight, scene.no_light,
+                                scene.background, actors,     scene.caster};
+            events_ = find_line_events(in, {0, lines_per_patch}, scene.context);
+            std::copy(scene.background.background.patch.begin(), scene.background.background.patch.end(),
+                      scene.visible.patch.begin());
+        }
+        for (const LineEvent& event : events_.at(frame - window_->first))
+            scene.visible.patch[event.line] = event.to;
+    }
+
+  private:
+    ActorTrees trees_;
+    std::optional<FrameSpan> window_;
+    LineEvents events_;
 };
 
 struct Costs {
-    double first_ms = 0, frame_ms = 0, all_ms = 0;
-    int measured = 0;
+    std::vector<double> frame_ms = {};
+    /// Of all frames; those not measured count as the median of those that are.
+    [[nodiscard]] double all_ms() const {
+        return std::accumulate(frame_ms.begin(), frame_ms.end(), 0.0) +
+               static_cast<double>(frames - static_cast<int>(frame_ms.size())) * median(frame_ms);
+    }
 };
 
-/// Frames 0, stride, 2·stride … until the time is up; those not measured count as the median.
-Costs run(Scene& scene, VisibilityStrategy& strategy, int stride, double own_ms, double most_s) {
-    VisibleLines visible = make_visible_lines(scene.mesh, scene.sight, scene.light);
-    std::vector<double> frame_ms;
-    double spent_ms = 0;
-    for (int f = 0; f < frames && spent_ms < 1000 * most_s; f += stride) {
-        scene.stand_at(f);
-        frame_ms.push_back(ms_of([&] {
-                               strategy.update(
-                                   {scene.mesh, scene.sight, scene.light, scene.caster, scene.background, f},
-                                   {0, lines_per_patch}, visible, scene.context);
-                           }) -
-                           own_ms);
-        spent_ms += frame_ms.back();
+template <class Work>
+Costs run(Scene& scene, int frames_measured, int stride, Work work) {
+    Costs costs;
+    for (int k = 0; k < frames_measured; ++k) {
+        scene.stand_at(k * stride);
+        costs.frame_ms.push_back(ms_of([&] { work(scene, k * stride); }));
     }
-    Costs out;
-    out.measured = static_cast<int>(frame_ms.size());
-    out.first_ms = frame_ms.front();
-    out.all_ms = std::accumulate(frame_ms.begin(), frame_ms.end(), 0.0);
-    out.frame_ms = median(frame_ms);
-    out.all_ms += (frames - out.measured) * out.frame_ms;
-    if (strategy.needs_background()) out.all_ms += scene.static_ms;
-    return out;
+    return costs;
 }
 
-void measure(const Member& member, double most_s) {
+/// Its updates, and the actors' own lines that it traces as well taken off.
+Costs run_temporal_graph(Scene& scene, int frames_measured) {
+    const auto strategy = make_temporal_graph(scene.world, frame_clock);
+    Costs costs = run(scene, frames_measured, 1, [&](Scene& in, int frame) {
+        strategy->update({in.mesh, in.sight, in.no_light, in.caster, in.background, frame},
+                         {0, lines_per_patch}, in.visible, in.context);
+    });
+    const Costs own = run(scene, frames_measured, 1, [](Scene& in, int) {
+        in.trace(in.sight.static_blocks(), in.sight.blocks().size());
+    });
+    for (std::size_t k = 0; k < costs.frame_ms.size(); ++k) costs.frame_ms[k] -= own.frame_ms[k];
+    return costs;
+}
+
+void print(const Scene& scene, const Member& member, const char* strategy, const Costs& costs,
+           double static_ms) {
+    std::printf("%d,%d,%s,%s,%u,%.1f,%.2f,%.3f,%.1f\n", member.actors, member.faces, member.speed_name,
+                strategy, scene.mesh.static_size(), static_ms, costs.frame_ms.front(), median(costs.frame_ms),
+                static_ms + costs.all_ms());
+    std::fflush(stdout);
+}
+
+void measure(const Member& member) {
     Scene scene(member);
-    VisibleLines visible = make_visible_lines(scene.mesh, scene.sight, scene.light);
-    std::vector<double> own_ms;
-    for (int f = 0; f < frames; f += frames / 6) {
-        scene.stand_at(f);
-        own_ms.push_back(scene.own_lines_ms(visible));
-    }
-    struct Asked {
-        const char* name;
-        std::unique_ptr<VisibilityStrategy> strategy;
-        int stride;
-    };
-    Asked asked[] = {{"retrace", make_retrace(), frames / 6},
-                     {"back-buffer", make_back_buffer(), frames / 6},
-                     {"temporal-graph", make_temporal_graph(scene.world, frame_clock), 1},
-                     {"events", make_events(scene.world, frame_clock), 1}};
-    for (Asked& each : asked) {
-        const Costs costs = run(scene, *each.strategy, each.stride, median(own_ms), most_s);
-        std::printf("%d,%d,%s,%s,%u,%.2f,%.2f,%.2f,%.3f,%.1f,%d\n", member.actors, member.faces,
-                    member.speed_name, each.name, scene.mesh.static_size(), median(own_ms), scene.static_ms,
-                    costs.first_ms, costs.frame_ms, costs.all_ms, costs.measured);
-        std::fflush(stdout);
-    }
+    print(scene, member, "retrace", run(scene, 6, frames / 6, retrace), 0);
+    print(scene, member, "back-buffer", run(scene, 6, frames / 6, back_buffer), scene.static_ms);
+    print(scene, member, "temporal-graph", run_temporal_graph(scene, 16), scene.static_ms);
+    print(scene, member, "events", run(scene, frames, 1, Events(scene)), scene.static_ms);
 }
 
 }  // namespace
@@ -195,12 +219,9 @@ void measure(const Member& member, double most_s) {
 int main(int count, char** arguments) {
     using namespace afterglow;
     const int most_actors = count > 1 ? std::atoi(arguments[1]) : 30;
-    const double most_s = count > 2 ? std::atof(arguments[2]) : 6;
-    std::printf(
-        "actors,faces,speed,strategy,static_patches,own_lines_ms,static_ms,first_ms,frame_ms,all_ms,"
-        "measured\n");
+    std::printf("actors,faces,speed,strategy,static_patches,static_ms,first_ms,frame_ms,all_ms\n");
     for (const int faces : {12, 320, 5120})
         for (const auto& [name, speed] : {std::pair{"slow", 0.3F}, {"normal", 1.2F}, {"fast", 5.0F}})
             for (const int actors : {1, 3, 10, 30})
-                if (actors <= most_actors) measure({actors, faces, name, speed}, most_s);
+                if (actors <= most_actors) measure({actors, faces, name, speed});
 }
