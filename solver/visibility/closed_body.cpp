@@ -8,9 +8,6 @@
 
 namespace afterglow {
 
-namespace {
-
-/// The number of each position among the different ones.
 std::vector<Index> joined_positions(const Body& body) {
     const auto key = [&](Index v) {
         const Vec3& p = body.positions[v];
@@ -27,6 +24,8 @@ std::vector<Index> joined_positions(const Body& body) {
     }
     return number;
 }
+
+namespace {
 
 /// Edges as they run round the faces; each must run back again round another.
 bool edges_run_both_ways(const std::vector<std::array<Index, 3>>& faces) {

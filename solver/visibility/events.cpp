@@ -11,6 +11,10 @@ namespace afterglow {
 
 namespace {
 
+// How much longer each window is than the one before it: work that is done once a window whatever its length
+// soon does not count, and no frame but the first few waits much longer than those before it.
+constexpr int growth = 4;
+
 /// The events of some frames, by the ranges of directions in which they were asked for.
 struct Window {
     SweptActors actors;
@@ -25,6 +29,8 @@ class Events : public VisibilityStrategy {
         : world_(world), trees_(make_actor_trees(world)), clock_(clock), config_(config) {
         if (config.frames_per_window < 1 || config.frames_per_window > 4096)
             throw Error(ErrorKind::invalid_input, "frames_per_window", "must be 1 to 4096");
+        if (config.frames_of_first_window < 1)
+            throw Error(ErrorKind::invalid_input, "frames_of_first_window", "must be 1 or more");
     }
 
     [[nodiscard]] bool needs_background() const override { return true; }
@@ -49,11 +55,10 @@ class Events : public VisibilityStrategy {
     }
 
   private:
-    /// Windows begin at multiples of their length, so that neighbouring frames share one from either side.
     void open_window(int frame) {
-        const int first = frame - frame % config_.frames_per_window;
-        window_.emplace(Window{
-            SweptActors(world_, trees_, clock_, {first, first + config_.frames_per_window - 1}), {}, {}, 0});
+        if (!start_) start_ = frame;
+        window_.emplace(
+            Window{SweptActors(world_, trees_, clock_, event_window(frame, *start_, config_)), {}, {}, 0});
         shown_.reset();
         forget_changes();
     }
@@ -161,6 +166,7 @@ class Events : public VisibilityStrategy {
     FrameClock clock_;
     EventsConfig config_;
     std::optional<Window> window_;
+    std::optional<int> start_;  ///< the first frame asked for
     std::optional<int> shown_;  ///< the frame that all known directions are at
     std::vector<WorkAhead> work_ahead_;
     bool changes_known_ = false;  ///< since somebody first asked, unless lines were brought anywhere at once
@@ -168,6 +174,18 @@ class Events : public VisibilityStrategy {
 };
 
 }  // namespace
+
+FrameSpan event_window(int frame, int start, const EventsConfig& config) {
+    const int full = config.frames_per_window;
+    if (frame < start) {
+        const int last = start - 1 - (start - 1 - frame) / full * full;
+        return {std::max(0, last - full + 1), last};
+    }
+    int first = start, count = std::min(config.frames_of_first_window, full);
+    for (; count < full && frame >= first + count; count = std::min(growth * count, full)) first += count;
+    first += (frame - first) / count * count;
+    return {first, first + count - 1};
+}
 
 std::unique_ptr<VisibilityStrategy> make_events(const World& world, const FrameClock& clock,
                                                 const EventsConfig& config) {

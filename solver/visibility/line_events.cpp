@@ -28,55 +28,80 @@ class Targets {
     /// By frame, from the buffer's first to its last for this lane.
     std::span<const Index> of(const TimeBuffer& buffer, std::size_t lane, const Ray& ray, Index background) {
         const int first = buffer.first(lane), last = buffer.last(lane);
+        const auto faces = buffer.faces(lane);
+        const auto depths_m = buffer.depths_m(lane);
         for (int f = first; f <= last;) {
-            const Index face = buffer.face(lane, f);
-            int end = f;
-            while (end < last && buffer.face(lane, end + 1) == face && steady(face, end)) ++end;
-            if (face == no_index) {
-                std::fill(at(f), at(end) + 1, background);
-            } else {
-                *at(f) = target(buffer, lane, f, ray);
-                *at(end) = target(buffer, lane, end, ray);
-                fill_between(buffer, lane, f, end, ray);
-            }
-            f = end + 1;
+            const Index number = faces[static_cast<std::size_t>(f)];
+            int end = f + 1;
+            while (end <= last && faces[static_cast<std::size_t>(end)] == number) ++end;
+            if (number == no_index)
+                std::fill(at(f), at(end), background);
+            else
+                look_up(scene_.actors.face(number), depths_m, ray, f, end);
+            f = end;
         }
         return {seen_.data() + first, static_cast<std::size_t>(last - first + 1)};
     }
 
   private:
+    /// One ray on one face, which does not turn.
+    struct Sight {
+        const SweptActors& actors;
+        const PatchMesh& mesh;
+        SweptActors::Face face;
+        std::span<const float> depths_m;  ///< by frame
+        glm::mat3 to_body;
+        Vec3 origin, direction;  ///< turned as the body's axes are, from the world's origin
+        Side side;
+
+        Sight(const EventScene& scene, const SweptActors::Face& on, std::span<const float> depths,
+              const Ray& ray, int frame)
+            : actors(scene.actors),
+              mesh(scene.mesh),
+              face(on),
+              depths_m(depths),
+              to_body(glm::transpose(glm::mat3_cast(actors.pose(face.body, frame).rotation))),
+              origin(to_body * ray.origin),
+              direction(to_body * ray.direction),
+              side(glm::dot(direction, face.shape.normal) < 0 ? Side::front : Side::back) {}
+
+        /// The patch that is seen in a frame.
+        [[nodiscard]] Index target(int frame) const {
+            const Vec3 body_at = to_body * actors.pose(face.body, frame).translation;
+            const Vec3 place = origin + depths_m[static_cast<std::size_t>(frame)] * direction - body_at;
+            const Index patch = mesh.patch_at(face.body, face.shape.triangle_at(place), side, place);
+            return patch == no_index ? sees_inside : patch;
+        }
+    };
+
     std::vector<Index>::iterator at(int frame) { return seen_.begin() + frame; }
-    [[nodiscard]] bool steady(Index face, int frame) const {
-        return face == no_index || scene_.actors.is_steady_after(scene_.actors.face(face).body, frame);
+
+    /// Frames [first, end) in which one face is seen, part by part of its actor's way.
+    void look_up(const SweptActors::Face& face, std::span<const float> depths_m, const Ray& ray, int first,
+                 int end) {
+        while (first < end) {
+            int last = first;
+            while (last + 1 < end && scene_.actors.is_steady_after(face.body, last)) ++last;
+            const Sight sight(scene_, face, depths_m, ray, first);
+            *at(first) = sight.target(first);
+            if (last > first) *at(last) = sight.target(last);
+            fill_between(sight, first, last);
+            first = last + 1;
+        }
     }
 
     /// The point that is seen runs along a line on the face, and patches are convex: between two places on
     /// one patch it leaves it nowhere.
-    void fill_between(const TimeBuffer& buffer, std::size_t lane, int first, int last, const Ray& ray) {
+    void fill_between(const Sight& sight, int first, int last) {
         if (last - first < 2) return;
         if (*at(first) == *at(last)) {
             std::fill(at(first) + 1, at(last), *at(first));
             return;
         }
         const int middle = first + (last - first) / 2;
-        *at(middle) = target(buffer, lane, middle, ray);
-        fill_between(buffer, lane, first, middle, ray);
-        fill_between(buffer, lane, middle, last, ray);
-    }
-
-    [[nodiscard]] Index target(const TimeBuffer& buffer, std::size_t lane, int frame, const Ray& ray) const {
-        const SweptActors::Face face = scene_.actors.face(buffer.face(lane, frame));
-        const Body& body = scene_.world.bodies[face.body];
-        const Pose& pose = scene_.actors.pose(face.body, frame);
-        const Quat back = glm::conjugate(pose.rotation);
-        const auto& v = body.triangles[face.triangle].vertices;
-        const Vec3 normal = glm::cross(body.positions[v[1]] - body.positions[v[0]],
-                                       body.positions[v[2]] - body.positions[v[0]]);
-        const Side side = glm::dot(back * ray.direction, normal) < 0 ? Side::front : Side::back;
-        const Vec3 place =
-            back * (ray.origin + buffer.depth_m(lane, frame) * ray.direction - pose.translation);
-        const Index patch = scene_.mesh.patch_at(face.body, face.triangle, side, place);
-        return patch == no_index ? sees_inside : patch;
+        *at(middle) = sight.target(middle);
+        fill_between(sight, first, middle);
+        fill_between(sight, middle, last);
     }
 
     const EventScene& scene_;
@@ -129,70 +154,78 @@ void check_size(std::size_t lines) {
                     "events count 4 billion lines at most; use fewer or larger patches");
 }
 
-/// Calls `put(part, block, buffer)` for every block of static patches with a buffer of its own thread's.
-template <class Put>
-LineEvents collect(const EventScene& scene, const Context& context, const Put& put) {
-    const int frames = scene.actors.frames().count();
+/// Calls `find(first block, end, part)` for chunks of the blocks of static patches.
+template <class Find>
+LineEvents collect(const EventScene& scene, const Context& context, const Find& find) {
     const std::size_t blocks = scene.sight.static_blocks();
     std::vector<Part> parts((blocks + blocks_per_chunk - 1) / blocks_per_chunk);
     context.for_chunks(blocks, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
-        TimeBuffer buffer(frames);
-        Targets targets(scene);
-        for (std::size_t b = begin; b < end; ++b) put(parts[begin / blocks_per_chunk], b, buffer, targets);
+        find(begin, end, parts[begin / blocks_per_chunk]);
     });
-    return by_frame(parts, frames, context);
+    return by_frame(parts, scene.actors.frames().count(), context);
+}
+
+void find_in_block(const EventScene& scene, std::size_t b, const DirectionRange& range, TimeBuffer& buffer,
+                   Targets& targets, Part& part) {
+    const LineTargets& background = scene.background.background;
+    const int frames = scene.actors.frames().count();
+    const PatchBlock& block = scene.sight.blocks()[b];
+    RayPacket rays;
+    for (Index d = range.first; d < range.last; ++d) {
+        scene.sight.rays(b, d, Pose{}, rays);
+        const std::size_t line = scene.sight.line(block, d, 0);
+        std::copy_n(background.distance.begin() + static_cast<std::ptrdiff_t>(line), block.count,
+                    rays.far.begin());
+        buffer.clear(rays);
+        scene.actors.trace(rays, buffer);
+        for (std::size_t lane = 0; lane < block.count; ++lane) {
+            if (buffer.last(lane) < buffer.first(lane)) continue;
+            const Index behind = background.patch[line + lane];
+            put_events(static_cast<Index>(line + lane), behind, buffer.first(lane),
+                       targets.of(buffer, lane, rays.ray(lane), behind), frames, part);
+        }
+    }
+}
+
+void find_light_in_block(const EventScene& scene, std::size_t b, HiddenFrames& hidden, Part& part) {
+    const PatchBlock& block = scene.sight.blocks()[b];
+    RayPacket rays;
+    std::array<float, 16> unused;
+    for (Index k = 0; k < scene.light.lines_per_patch(); ++k) {
+        if (scene.mesh.body[scene.light.lamp_patch(b, k)] != furniture) continue;
+        scene.light.rays(b, k, scene.placed, rays, unused);
+        const std::size_t line = scene.light.line(block, k, 0);
+        for (std::size_t lane = 0; lane < block.count; ++lane)
+            if (!(scene.background.light_contribution[line + lane] > 0)) rays.far[lane] = 0;
+        hidden.clear(rays);
+        scene.actors.trace(rays, hidden);
+        for (std::size_t lane = 0; lane < block.count; ++lane) {
+            if (!hidden.any(lane)) continue;
+            hidden.for_changes(lane, [&](int frame, bool blocked) {
+                part.push_back({frame,
+                                {static_cast<Index>(line + lane), blocked ? lamp_open : lamp_hidden,
+                                 blocked ? lamp_hidden : lamp_open}});
+            });
+        }
+    }
 }
 
 }  // namespace
 
 LineEvents find_line_events(const EventScene& scene, const DirectionRange& range, const Context& context) {
-    const LineTargets& background = scene.background.background;
-    check_size(background.patch.size());
-    const int frames = scene.actors.frames().count();
-    return collect(scene, context, [&](Part& part, std::size_t b, TimeBuffer& buffer, Targets& targets) {
-        const PatchBlock& block = scene.sight.blocks()[b];
-        RayPacket rays;
-        for (Index d = range.first; d < range.last; ++d) {
-            scene.sight.rays(b, d, Pose{}, rays);
-            const std::size_t line = scene.sight.line(block, d, 0);
-            std::copy_n(background.distance.begin() + static_cast<std::ptrdiff_t>(line), block.count,
-                        rays.far.begin());
-            buffer.clear(rays);
-            scene.actors.trace(rays, buffer);
-            for (std::size_t lane = 0; lane < block.count; ++lane) {
-                if (buffer.last(lane) < buffer.first(lane)) continue;
-                const Index behind = background.patch[line + lane];
-                put_events(static_cast<Index>(line + lane), behind, buffer.first(lane),
-                           targets.of(buffer, lane, rays.ray(lane), behind), frames, part);
-            }
-        }
+    check_size(scene.background.background.patch.size());
+    return collect(scene, context, [&](std::size_t begin, std::size_t end, Part& part) {
+        TimeBuffer buffer(scene.actors.frames().count());
+        Targets targets(scene);
+        for (std::size_t b = begin; b < end; ++b) find_in_block(scene, b, range, buffer, targets, part);
     });
 }
 
 LineEvents find_light_events(const EventScene& scene, const Context& context) {
     check_size(scene.background.light_contribution.size());
-    const int frames = scene.actors.frames().count();
-    return collect(scene, context, [&](Part& part, std::size_t b, TimeBuffer& buffer, Targets&) {
-        const PatchBlock& block = scene.sight.blocks()[b];
-        RayPacket rays;
-        std::array<float, 16> unused;
-        std::vector<Index> seen;
-        for (Index k = 0; k < scene.light.lines_per_patch(); ++k) {
-            if (scene.mesh.body[scene.light.lamp_patch(b, k)] != furniture) continue;
-            scene.light.rays(b, k, scene.placed, rays, unused);
-            const std::size_t line = scene.light.line(block, k, 0);
-            for (std::size_t lane = 0; lane < block.count; ++lane)
-                if (!(scene.background.light_contribution[line + lane] > 0)) rays.far[lane] = 0;
-            buffer.clear(rays);
-            scene.actors.trace(rays, buffer);
-            for (std::size_t lane = 0; lane < block.count; ++lane) {
-                seen.clear();
-                for (int f = buffer.first(lane); f <= buffer.last(lane); ++f)
-                    seen.push_back(buffer.face(lane, f) == no_index ? lamp_open : lamp_hidden);
-                put_events(static_cast<Index>(line + lane), lamp_open, buffer.first(lane), seen, frames,
-                           part);
-            }
-        }
+    return collect(scene, context, [&](std::size_t begin, std::size_t end, Part& part) {
+        HiddenFrames hidden(scene.actors.frames().count());
+        for (std::size_t b = begin; b < end; ++b) find_light_in_block(scene, b, hidden, part);
     });
 }
 

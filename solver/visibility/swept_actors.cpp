@@ -4,52 +4,67 @@
 #include <bit>
 
 #include "solver/visibility/moving_faces.h"
+#include "solver/visibility/packet_hull.h"
 
 namespace afterglow {
 
 ActorTrees make_actor_trees(const World& world) {
     ActorTrees trees(world.bodies.size());
-    for (std::size_t b = 1; b < trees.size(); ++b) trees[b] = make_triangle_tree(world.bodies[b]);
+    for (std::size_t b = 1; b < trees.size(); ++b) trees[b] = make_face_tree(world.bodies[b]);
     return trees;
 }
 
 SweptActors::SweptActors(const World& world, const ActorTrees& trees, const FrameClock& clock,
                          const FrameSpan& frames)
-    : world_(&world),
-      trees_(&trees),
-      frames_(frames),
-      poses_(world.bodies.size()),
-      steady_after_(world.bodies.size()) {
-    Index faces = 0;
-    for (const Body& body : world.bodies) {
-        first_face_.push_back(faces);
-        // The furniture's faces are never met.
-        if (first_face_.size() > 1) faces += static_cast<Index>(body.triangles.size());
+    : trees_(&trees), frames_(frames), poses_(world.bodies.size()), steady_after_(world.bodies.size()) {
+    for (Index b = 0; b < world.bodies.size(); ++b) {
+        first_face_.push_back(static_cast<Index>(body_of_face_.size()));
+        body_of_face_.insert(body_of_face_.end(), trees[b].faces.size(), b);
     }
     for (Index b = 1; b < world.bodies.size(); ++b) {
         const Path& path = world.bodies[b].path;
         for (int f = frames.first; f <= frames.last; ++f) poses_[b].push_back(path.at(clock.time_of(f)));
         steady_after_[b].assign(static_cast<std::size_t>(frames.count()), 0);
+        Swept swept;
         for (SteadyFrames part : steady_frames(path, clock, frames)) {
             part.frames.first -= frames.first;
             part.frames.last -= frames.first;
-            sweeps_.push_back({b, part, {}});
-            if (part.motion == Motion::turning)
-                sweeps_.back().balls = balls_of(part, b);
-            else
+            if (part.motion != Motion::turning)
                 std::fill_n(steady_after_[b].begin() + part.frames.first, part.frames.count() - 1, 1);
+            if (trees[b].nodes.empty()) continue;
+            swept.sweeps.push_back(sweep_of(part, b));
+            swept.box.add(swept.sweeps.back().box);
         }
+        if (swept.sweeps.empty()) continue;
+        reach_m_ = std::max({reach_m_, glm::length(swept.box.low), glm::length(swept.box.high)});
+        swept_.push_back(std::move(swept));
     }
 }
 
-std::vector<SweptActors::Ball> SweptActors::balls_of(const SteadyFrames& part, Index body) const {
-    if ((*trees_)[body].nodes.empty()) return {};
-    const TriangleTree::Node& root = (*trees_)[body].nodes.front();
+SweptActors::Sweep SweptActors::sweep_of(const SteadyFrames& part, Index body) const {
+    const FaceTree::Node& root = (*trees_)[body].nodes.front();
+    Sweep sweep{body, part, {}, {}};
+    const float radius_m = glm::length(root.half);
+    if (part.motion != Motion::turning) {
+        for (const Vec3& at :
+             {part.first.point(root.centre),
+              part.first.point(root.centre) + static_cast<float>(part.frames.count() - 1) * part.step_m}) {
+            const glm::mat3 turned = glm::mat3_cast(part.first.rotation);
+            const Vec3 half = glm::abs(turned[0]) * root.half.x + glm::abs(turned[1]) * root.half.y +
+                              glm::abs(turned[2]) * root.half.z;
+            sweep.box.add(at - half);
+            sweep.box.add(at + half);
+        }
+        return sweep;
+    }
     const auto leaves = std::bit_ceil(static_cast<std::size_t>(part.frames.count()));
-    std::vector<Ball> balls(2 * leaves);
+    std::vector<Ball>& balls = sweep.balls;
+    balls.resize(2 * leaves);
     for (std::size_t k = 0; k < leaves; ++k) {
         const int frame = std::min(part.frames.first + static_cast<int>(k), part.frames.last);
-        balls[leaves + k] = {pose(body, frame).point(root.centre), glm::length(root.half)};
+        balls[leaves + k] = {pose(body, frame).point(root.centre), radius_m};
+        sweep.box.add(balls[leaves + k].centre - radius_m);
+        sweep.box.add(balls[leaves + k].centre + radius_m);
     }
     for (std::size_t k = leaves - 1; k > 0; --k) {
         const Ball &a = balls[2 * k], &b = balls[2 * k + 1];
@@ -57,7 +72,7 @@ std::vector<SweptActors::Ball> SweptActors::balls_of(const SteadyFrames& part, I
         balls[k] = {centre, std::max(glm::length(a.centre - centre) + a.radius_m,
                                      glm::length(b.centre - centre) + b.radius_m)};
     }
-    return balls;
+    return sweep;
 }
 
 namespace {
@@ -78,8 +93,9 @@ bool meets_ball(const RayPacket& rays, const Vec3& centre, float radius_m) {
 
 }  // namespace
 
+template <class Buffer>
 void SweptActors::trace_turning(const Sweep& sweep, std::size_t ball, const RayPacket& rays,
-                                TimeBuffer& buffer) const {
+                                Buffer& buffer) const {
     if (!meets_ball(rays, sweep.balls[ball].centre, sweep.balls[ball].radius_m)) return;
     const std::size_t leaves = sweep.balls.size() / 2;
     if (ball < leaves) {
@@ -89,31 +105,34 @@ void SweptActors::trace_turning(const Sweep& sweep, std::size_t ball, const RayP
     }
     const int frame = sweep.part.frames.first + static_cast<int>(ball - leaves);
     if (frame > sweep.part.frames.last) return;
-    trace_moving_faces({world_->bodies[sweep.body],
-                        (*trees_)[sweep.body],
-                        first_face_[sweep.body],
-                        pose(sweep.body, frame),
-                        Vec3(0),
-                        {frame, frame}},
-                       rays, buffer);
+    trace_moving_faces(
+        {(*trees_)[sweep.body], first_face_[sweep.body], pose(sweep.body, frame), Vec3(0), {frame, frame}},
+        rays, buffer);
 }
 
-SweptActors::Face SweptActors::face(Index number) const {
-    const auto next = std::upper_bound(first_face_.begin() + 1, first_face_.end(), number);
-    const auto body = static_cast<Index>(next - first_face_.begin() - 1);
-    return {body, number - first_face_[body]};
+template <class Buffer>
+void SweptActors::trace_near(const RayPacket& rays, Buffer& buffer) const {
+    const PacketHull hull(rays, reach_m_);
+    for (const Swept& swept : swept_) {
+        if (!hull.may_meet(swept.box)) continue;
+        for (const Sweep& sweep : swept.sweeps) {
+            if (!hull.may_meet(sweep.box)) continue;
+            if (sweep.part.motion == Motion::turning)
+                trace_turning(sweep, 1, rays, buffer);
+            else
+                trace_moving_faces({(*trees_)[sweep.body], first_face_[sweep.body], sweep.part.first,
+                                    sweep.part.step_m, sweep.part.frames},
+                                   rays, buffer);
+        }
+    }
 }
 
 void SweptActors::trace(const RayPacket& rays, TimeBuffer& buffer) const {
-    for (const Sweep& sweep : sweeps_) {
-        if (sweep.part.motion == Motion::turning) {
-            if (!sweep.balls.empty()) trace_turning(sweep, 1, rays, buffer);
-            continue;
-        }
-        trace_moving_faces({world_->bodies[sweep.body], (*trees_)[sweep.body], first_face_[sweep.body],
-                            sweep.part.first, sweep.part.step_m, sweep.part.frames},
-                           rays, buffer);
-    }
+    trace_near(rays, buffer);
+}
+
+void SweptActors::trace(const RayPacket& rays, HiddenFrames& hidden) const {
+    trace_near(rays, hidden);
 }
 
 }  // namespace afterglow

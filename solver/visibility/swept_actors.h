@@ -2,14 +2,15 @@
 
 #include <vector>
 
+#include "solver/visibility/face_tree.h"
+#include "solver/visibility/hidden_frames.h"
 #include "solver/visibility/motion.h"
 #include "solver/visibility/time_buffer.h"
-#include "solver/visibility/triangle_tree.h"
 
 namespace afterglow {
 
 /// A tree over the faces of every body; the furniture's is empty.
-using ActorTrees = std::vector<TriangleTree>;
+using ActorTrees = std::vector<FaceTree>;
 ActorTrees make_actor_trees(const World& world);
 
 /// The actors as they move over some consecutive frames, ready to be met by rays that stand still. A ray and
@@ -38,13 +39,20 @@ class SweptActors {
 
     /// A face, as time buffers number them.
     struct Face {
-        Index body, triangle;
+        Index body;
+        const ConvexFace& shape;
     };
-    [[nodiscard]] Face face(Index number) const;
+    [[nodiscard]] Face face(Index number) const {
+        const Index body = body_of_face_[number];
+        return {body, (*trees_)[body].faces[number - first_face_[body]]};
+    }
 
     /// Puts every face that a ray meets before its `far` into the buffer, which has been cleared for these
     /// rays and has as many frames.
     void trace(const RayPacket& rays, TimeBuffer& buffer) const;
+
+    /// Puts the frames in which a ray is blocked before its `far`, likewise.
+    void trace(const RayPacket& rays, HiddenFrames& hidden) const;
 
   private:
     struct Ball {
@@ -55,18 +63,28 @@ class SweptActors {
     struct Sweep {
         Index body = 0;
         SteadyFrames part;
+        Box box;                  ///< of where it comes
         std::vector<Ball> balls;  ///< turning ones: a heap over the frames, the last level one ball a frame
     };
-    [[nodiscard]] std::vector<Ball> balls_of(const SteadyFrames& part, Index body) const;
-    void trace_turning(const Sweep& sweep, std::size_t ball, const RayPacket& rays, TimeBuffer& buffer) const;
+    /// All sweeps of one actor.
+    struct Swept {
+        Box box;
+        std::vector<Sweep> sweeps;
+    };
+    [[nodiscard]] Sweep sweep_of(const SteadyFrames& part, Index body) const;
+    template <class Buffer>
+    void trace_near(const RayPacket& rays, Buffer& buffer) const;
+    template <class Buffer>
+    void trace_turning(const Sweep& sweep, std::size_t ball, const RayPacket& rays, Buffer& buffer) const;
 
-    const World* world_;
     const ActorTrees* trees_;
     FrameSpan frames_;
-    std::vector<Index> first_face_;                ///< by body: the number of its first triangle
+    std::vector<Index> first_face_;  ///< by body: the number of its first face
+    std::vector<Index> body_of_face_;
     std::vector<std::vector<Pose>> poses_;         ///< [body][frame]; empty for the furniture
     std::vector<std::vector<char>> steady_after_;  ///< [body][frame]; empty for the furniture
-    std::vector<Sweep> sweeps_;
+    std::vector<Swept> swept_;                     ///< actors that have faces
+    float reach_m_ = 0;                            ///< no actor comes further off the origin of the world
 };
 
 }  // namespace afterglow

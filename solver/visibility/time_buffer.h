@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "solver/visibility/ray_caster.h"
@@ -16,6 +17,11 @@ struct FaceRun {
     float depth_m = 0, step_m = 0;
     float low_m = 0, high_m = 0;
     float along_m = 0;
+
+    [[nodiscard]] float depth_at(int frames_on) const {
+        const auto steps = static_cast<float>(frames_on);
+        return std::min(std::max(depth_m + steps * step_m, low_m), high_m) + steps * along_m;
+    }
 };
 
 /// The faces that sixteen fixed rays meet over some consecutive frames: for each ray a depth buffer whose
@@ -26,7 +32,9 @@ class TimeBuffer {
   public:
     /// `frames` 1 or more.
     explicit TimeBuffer(int frames)
-        : frames_(static_cast<std::size_t>(frames)), depth_m_(16 * frames_), face_(16 * frames_) {
+        : frames_(static_cast<std::size_t>(frames)),
+          depth_m_(16 * frames_ + at_once),
+          face_(16 * frames_ + at_once) {
         clear({});
     }
 
@@ -44,15 +52,16 @@ class TimeBuffer {
         float* const depth = &depth_m_[index(lane, run.first)];
         Index* const face = &face_[index(lane, run.first)];
         const int count = run.last - run.first + 1;
-        for (int k = 0; k < count; ++k) {
-            const auto steps = static_cast<float>(k);
-            const float on_face = std::min(std::max(run.depth_m + steps * run.step_m, run.low_m), run.high_m);
-            const float at = on_face + steps * run.along_m;
-            // Without branches, so that it becomes vector code.
-            const bool same = (at == depth[k]) & (face[k] != no_index);
-            const bool nearer = (at > 0) & ((at < depth[k]) | (same & (run.face < face[k])));
-            depth[k] = nearer ? at : depth[k];
-            face[k] = nearer ? run.face : face[k];
+        // So many at once, without branches, that it becomes vector code; what follows the run stays.
+        for (int k = 0; k < count; k += at_once) {
+            for (int j = k; j < k + at_once; ++j) {
+                const float at = run.depth_at(j);
+                const bool same = (at == depth[j]) & (face[j] != no_index);
+                const bool nearer =
+                    (j < count) & (at > 0) & ((at < depth[j]) | (same & (run.face < face[j])));
+                depth[j] = nearer ? at : depth[j];
+                face[j] = nearer ? run.face : face[j];
+            }
         }
     }
 
@@ -60,11 +69,17 @@ class TimeBuffer {
     [[nodiscard]] int first(std::size_t lane) const { return first_[lane]; }
     [[nodiscard]] int last(std::size_t lane) const { return last_[lane]; }
 
-    /// What a lane meets in a frame from first to last; no_index where nothing.
-    [[nodiscard]] Index face(std::size_t lane, int frame) const { return face_[index(lane, frame)]; }
-    [[nodiscard]] float depth_m(std::size_t lane, int frame) const { return depth_m_[index(lane, frame)]; }
+    /// What a lane meets, by frame, from first to last; no_index where nothing.
+    [[nodiscard]] std::span<const Index> faces(std::size_t lane) const {
+        return {&face_[index(lane, 0)], frames_};
+    }
+    [[nodiscard]] std::span<const float> depths_m(std::size_t lane) const {
+        return {&depth_m_[index(lane, 0)], frames_};
+    }
 
   private:
+    static constexpr int at_once = 8;
+
     [[nodiscard]] std::size_t index(std::size_t lane, int frame) const {
         return lane * frames_ + static_cast<std::size_t>(frame);
     }

@@ -1,6 +1,7 @@
 #include "solver/visibility/events.h"
 
 #include <algorithm>
+#include <deque>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -129,6 +130,53 @@ TEST(Events, GoOnAfterAStop) {
     EXPECT_EQ(watched.visible.patch, fresh.visible.patch);
 }
 
+TEST(Events, DoNotDependOnTheWindows) {
+    for (const Turning turning : {Turning::no, Turning::yes}) {
+        const World world = crowded_room(11, 4, turning);
+        Watched whole(world, {128, 128});
+        std::deque<Watched> divided;
+        for (const EventsConfig config : {EventsConfig{}, {128, 1}, {16, 3}, {1, 1}})
+            divided.emplace_back(world, config);
+        Disagreement found;
+        for (int frame = 0; frame < 45; ++frame) {
+            whole.show(frame);
+            for (Watched& watched : divided) {
+                watched.show(frame);
+                found.add(watched.visible, whole.visible);
+            }
+        }
+        EXPECT_LE(found.different, found.lines / 100'000);
+        std::printf("%zu of %zu lines differ\n", found.different, found.lines);
+    }
+}
+
+TEST(Events, BeginWithAShortWindow) {
+    Watched watched(crowded_room(5, 2, Turning::no));
+    for (const int frame : {7, 14, 15, 46, 47, 3}) watched.show(frame);
+    std::vector<FrameSpan> windows;
+    for (const WorkAhead& work : watched.strategy->work_ahead()) windows.push_back(work.frames);
+    EXPECT_THAT(windows, ::testing::ElementsAre(FrameSpan{7, 14}, FrameSpan{15, 46}, FrameSpan{47, 174},
+                                                FrameSpan{0, 6}));
+}
+
+TEST(EventWindow, HoldsEachFrameOnce) {
+    for (const EventsConfig config : {EventsConfig{}, {1, 1}, {5, 2}, {100, 7}, {4, 9}}) {
+        for (const int start : {0, 3, 250}) {
+            int next = 0;
+            while (next < 1000) {
+                const FrameSpan window = event_window(next, start, config);
+                ASSERT_EQ(window.first, next);
+                ASSERT_GE(window.count(), 1);
+                ASSERT_LE(window.count(), config.frames_per_window);
+                for (int f = window.first; f <= window.last; ++f)
+                    ASSERT_EQ(event_window(f, start, config), window);
+                next = window.last + 1;
+            }
+        }
+    }
+    EXPECT_EQ(event_window(2'000'000'000, 5, {}).count(), 128);
+}
+
 TEST(Events, AreNoneWhereNothingMoves) {
     World world = testing::small_room();
     world.bodies.resize(1);
@@ -168,6 +216,7 @@ TEST(Events, OfFarFramesAreFound) {
 TEST(Events, OfAWindowOfNoFramesAreRefused) {
     const World world = testing::small_room();
     EXPECT_THROW(make_events(world, clock_of_tests, {0}), Error);
+    EXPECT_THROW(make_events(world, clock_of_tests, {8, 0}), Error);
 }
 
 }  // namespace

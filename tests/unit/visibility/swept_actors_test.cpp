@@ -31,19 +31,23 @@ RayPacket random_packet(std::mt19937& random, float spread, Index count) {
     return rays;
 }
 
+bool shows(const ConvexFace& face, const Hit& hit) {
+    return face.triangle == hit.triangle || face.second_triangle == hit.triangle;
+}
+
 void compare_frame(const RayCaster& caster, const SweptActors& swept, const RayPacket& rays,
                    const TimeBuffer& buffer, int f, Differences& out) {
     for (std::size_t l = 0; l < rays.count; ++l) {
         const Hit hit = caster.nearest(rays.ray(l), Scope::actors);
         const bool open = buffer.first(l) <= f && f <= buffer.last(l);
-        const Index number = open ? buffer.face(l, f) : no_index;
-        const SweptActors::Face face =
-            number == no_index ? SweptActors::Face{no_index, no_index} : swept.face(number);
+        const Index number = open ? buffer.faces(l)[static_cast<std::size_t>(f)] : no_index;
+        const Index body = number == no_index ? no_index : swept.face(number).body;
         ++out.line_frames;
         out.met += hit.body != no_index ? 1U : 0U;
-        if (face.body == hit.body && face.triangle == hit.triangle) continue;
-        const bool both = face.body != no_index && hit.body != no_index;
-        if (both && std::abs(buffer.depth_m(l, f) - hit.distance) < 1e-4F) continue;
+        if (body == hit.body && (body == no_index || shows(swept.face(number).shape, hit))) continue;
+        const bool both = body != no_index && hit.body != no_index;
+        if (both && std::abs(buffer.depths_m(l)[static_cast<std::size_t>(f)] - hit.distance) < 1e-4F)
+            continue;
         ++out.other_face;
     }
 }
@@ -125,8 +129,9 @@ std::vector<float> depths_along_z(const World& world, int frames, const Vec3& di
     swept.trace(rays, buffer);
     std::vector<float> depths;
     for (int f = 0; f < frames; ++f) {
-        const bool met = buffer.first(0) <= f && f <= buffer.last(0) && buffer.face(0, f) != no_index;
-        depths.push_back(met ? buffer.depth_m(0, f) : 0);
+        const bool met = buffer.first(0) <= f && f <= buffer.last(0) &&
+                         buffer.faces(0)[static_cast<std::size_t>(f)] != no_index;
+        depths.push_back(met ? buffer.depths_m(0)[static_cast<std::size_t>(f)] : 0);
     }
     return depths;
 }
