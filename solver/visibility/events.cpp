@@ -5,6 +5,8 @@
 
 #include "solver/base/error.h"
 #include "solver/visibility/line_events.h"
+#include "solver/visibility/own_light_lines.h"
+#include "solver/visibility/own_lines.h"
 
 namespace afterglow {
 
@@ -21,7 +23,7 @@ struct Window {
 class Events : public VisibilityStrategy {
   public:
     Events(const World& world, const FrameClock& clock, const EventsConfig& config)
-        : world_(world), trees_(make_actor_trees(world)), clock_(clock), config_(config) {
+        : world_(world), trees_(make_actor_trees(world)), clock_(clock), config_(config), own_(world), own_light_(world) {
         if (config.frames_per_window < 1 || config.frames_per_window > 4096)
             throw Error(ErrorKind::invalid_input, "frames_per_window", "must be 1 to 4096");
     }
@@ -37,7 +39,9 @@ class Events : public VisibilityStrategy {
             move_to(scene, visible);
         if (range.last > window_->directions) extend(scene, range.last, visible, context);
         shown_ = scene.frame;
-        return trace_actors_lines(scene, range, visible, context);
+        std::uint64_t rays = own_.update(scene, range, visible, context);
+        if (range.first == 0) rays += own_light_.update(scene, visible, context);
+        return rays;
     }
 
   private:
@@ -116,18 +120,6 @@ class Events : public VisibilityStrategy {
             work_ahead_.back().time += time;
     }
 
-    static std::uint64_t trace_actors_lines(const LineScene& scene, const DirectionRange& range,
-                                            VisibleLines& visible, const Context& context) {
-        const LineRange lines{scene.sight.static_blocks(), scene.sight.blocks().size(), range.first,
-                              range.last};
-        std::uint64_t rays = trace_lines(scene.sight, scene.mesh, scene.caster, Scope::everything, lines,
-                                         LineSinks{visible.patch, {}}, context);
-        if (range.first == 0)
-            rays += trace_moving_light_lines(scene.light, scene.sight, scene.mesh, scene.caster,
-                                             visible.light_contribution, context);
-        return rays;
-    }
-
     const World& world_;
     ActorTrees trees_;
     FrameClock clock_;
@@ -135,6 +127,8 @@ class Events : public VisibilityStrategy {
     std::optional<Window> window_;
     std::optional<int> shown_;  ///< the frame that all known directions are at
     std::vector<WorkAhead> work_ahead_;
+    OwnLines own_;
+    OwnLightLines own_light_;
 };
 
 }  // namespace

@@ -23,6 +23,13 @@ struct PatchBlock {
     Index body = 0;
 };
 
+/// How many of an actor's lines are lines of their own. Static patches are traced once, actors' at every
+/// frame.
+struct MovingLinesConfig {
+    Index repeats = 4;   ///< at most so many lines of a moving patch are one and the same, 1 or more
+    Index fewest = 64;   ///< no fewer lines of their own than this are left to a patch by repeating
+};
+
 /// The sight lines of all patches. Rays are never stored: line d of a patch follows from the patch's block, d
 /// and the seed. Line (block, d, lane) has the index block.first · D + d · block.count + lane, so that the
 /// lines traced together stand together. Thread-safety: const after construction.
@@ -30,7 +37,8 @@ class SightLines {
   public:
     /// `lines_per_patch` D ≥ 1. The mesh and world are read at construction and by `rays`; the mesh must
     /// outlive this.
-    SightLines(const PatchMesh& mesh, const World& world, Index lines_per_patch, std::uint64_t seed);
+    SightLines(const PatchMesh& mesh, const World& world, Index lines_per_patch, std::uint64_t seed,
+               const MovingLinesConfig& moving = {});
 
     [[nodiscard]] Index lines_per_patch() const { return lines_per_patch_; }
     [[nodiscard]] const std::vector<PatchBlock>& blocks() const { return blocks_; }
@@ -39,6 +47,11 @@ class SightLines {
     [[nodiscard]] std::size_t line(const PatchBlock& block, Index direction, Index lane) const {
         return static_cast<std::size_t>(block.first) * lines_per_patch_ +
                static_cast<std::size_t>(direction) * block.count + lane;
+    }
+    /// How many lines of a block's patches differ: D of static ones. Of moving ones it may be a fraction of
+    /// it, the first of the same well-spread sequence; line d is then line d modulo this.
+    [[nodiscard]] Index different_lines(const PatchBlock& block) const {
+        return block.body == furniture ? lines_per_patch_ : moving_lines_;
     }
     /// How far an origin is lifted off its surface so that a ray does not meet the surface it starts on.
     [[nodiscard]] float lift_m() const { return lift_m_; }
@@ -49,7 +62,7 @@ class SightLines {
 
   private:
     const PatchMesh* mesh_;
-    Index lines_per_patch_;
+    Index lines_per_patch_, moving_lines_;
     std::uint64_t seed_;
     SobolPoints points_;
     std::vector<PatchBlock> blocks_;
@@ -69,7 +82,9 @@ struct LineSinks {
     std::span<float> distance;
 };
 
-/// The patch, or sees_inside / sees_nothing, that a hit stands for.
+/// The patch, or sees_inside / sees_nothing, that a hit stands for; the ray is in the frame of the body hit.
+Index target_of(const Hit& hit, const Ray& ray, const PatchMesh& mesh);
+/// The same for a ray in world coordinates.
 Index target_of(const Hit& hit, const Ray& ray, const PatchMesh& mesh, const RayCaster& caster);
 
 /// Part of all lines: blocks [first_block, last_block) and directions [first_direction, last_direction).
@@ -79,7 +94,7 @@ struct LineRange {
 };
 
 /// Traces lines against the furniture and, with Scope::everything, the actors, and writes what they see.
-/// Returns the number of rays. Errors: cancelled.
+/// Lines that are one and the same are traced once where all are in the range. Returns the number of rays. Errors: cancelled.
 std::uint64_t trace_lines(const SightLines& lines, const PatchMesh& mesh, const RayCaster& caster,
                           Scope scope, const LineRange& range, const LineSinks& sinks,
                           const Context& context);

@@ -25,17 +25,6 @@ class SharedWork {
     TemporalGraphWork& sum_;
 };
 
-/// Where a body's box is now.
-Box placed_box(const Box& local, const Pose& pose, float slack_m) {
-    Box box;
-    if (local.empty()) return box;
-    for (int corner = 0; corner < 8; ++corner)
-        box.add(pose.point(Vec3((corner & 1) != 0 ? local.high.x : local.low.x,
-                                (corner & 2) != 0 ? local.high.y : local.low.y,
-                                (corner & 4) != 0 ? local.high.z : local.low.z)));
-    return {box.low - Vec3(slack_m), box.high + Vec3(slack_m)};
-}
-
 /// Calls `body(direction, encounters)` for every packet of which some encounter is due.
 template <class Body>
 void for_packets(std::span<const Encounter> encounters, const DirectionRange& range, std::size_t slice,

@@ -11,6 +11,8 @@
 #include "solver/scene/load.h"
 #include "solver/visibility/events.h"
 #include "solver/visibility/line_events.h"
+#include "solver/visibility/own_light_lines.h"
+#include "solver/visibility/own_lines.h"
 #include "solver/visibility/reach.h"
 
 namespace afterglow {
@@ -141,6 +143,58 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
     std::printf("events in all: %.2f M\n", static_cast<double>(events_applied) * 1e-6);
 }
 
+/// Actors' own lines, of which some or all differ, and their light lines: all anew, or as OwnLines and
+/// OwnLightLines do it. Medians over sampled frames and exact counts of rays.
+void compare_own_lines(Room& room, const FrameClock& clock, int frames, const Context& context) {
+    std::printf("\nactors' own lines        rays a frame, anew  frame, ms  kept, rays  frame, ms  ratio\n");
+    const auto print = [](const char* name, double anew_rays, const std::vector<double>& anew_ms,
+                          double kept_rays, const std::vector<double>& kept_ms) {
+        std::printf("%-24s %18.0f %10.2f %11.0f %10.2f %6.1f\n", name, anew_rays, median(anew_ms), kept_rays,
+                    median(kept_ms), median(anew_ms) / median(kept_ms));
+    };
+    VisibleLines seen = make_visible_lines(room.mesh, room.sight, room.light);
+    const Index lines = room.sight.lines_per_patch();
+    std::vector<int> sampled;
+    for (int f = 0; f < frames; f += std::max(1, frames / 24)) sampled.push_back(f);
+    const double shots = static_cast<double>(sampled.size());
+    for (const Index repeats : {1U, 2U, 4U, 8U}) {
+        const SightLines sight(room.mesh, room.world, lines, 1, {repeats, 1});
+        OwnLines own(room.world);
+        std::vector<double> anew_ms, kept_ms;
+        double anew_rays = 0, kept_rays = 0;
+        for (const int f : sampled) {
+            room.caster.set_poses(poses_at(room.world, clock.time_of(f)));
+            const LineScene scene{room.mesh, sight, room.light, room.caster, room.background, f};
+            anew_ms.push_back(ms_of([&] {
+                anew_rays += static_cast<double>(
+                    trace_lines(sight, room.mesh, room.caster, Scope::everything,
+                                {sight.static_blocks(), sight.blocks().size(), 0, lines},
+                                {seen.patch, {}}, context));
+            }));
+            kept_ms.push_back(ms_of([&] {
+                const auto rays = own.update(scene, {0, lines}, seen, context);
+                kept_rays += f == sampled.front() ? 0.0 : static_cast<double>(rays);
+            }));
+        }
+        print(("1 line in " + std::to_string(repeats)).c_str(), anew_rays / shots, anew_ms,
+              kept_rays / (shots - 1), kept_ms);
+    }
+    OwnLightLines own(room.world);
+    std::vector<double> anew_ms, kept_ms;
+    double anew_rays = 0, kept_rays = 0;
+    for (const int f : sampled) {
+        room.caster.set_poses(poses_at(room.world, clock.time_of(f)));
+        const LineScene scene{room.mesh, room.sight, room.light, room.caster, room.background, f};
+        anew_ms.push_back(ms_of([&] {
+            anew_rays += static_cast<double>(trace_moving_light_lines(
+                room.light, room.sight, room.mesh, room.caster, seen.light_contribution, context));
+        }));
+        kept_ms.push_back(
+            ms_of([&] { kept_rays += static_cast<double>(own.update(scene, seen, context)); }));
+    }
+    print("light lines", anew_rays / shots, anew_ms, kept_rays / shots, kept_ms);
+}
+
 /// Everything a frame looks along: actors' own lines and light lines, too.
 void compare_whole_frames(Room& room, const FrameClock& clock, int frames, const Context& context) {
     VisibleLines visible = make_visible_lines(room.mesh, room.sight, room.light);
@@ -184,5 +238,6 @@ int main(int count, char** arguments) {
     std::printf("living-room, %d frames, %u patches x %u lines, %d threads\n", frames, room.mesh.size(),
                 room.sight.lines_per_patch(), context.threads());
     compare_static_lines(room, clock, frames, context);
+    compare_own_lines(room, clock, frames, context);
     compare_whole_frames(room, clock, frames, context);
 }
