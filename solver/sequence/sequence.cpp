@@ -31,7 +31,7 @@ std::unique_ptr<VisibilityStrategy> make_strategy(const SequenceState::Parts& pa
         case Visibility::retrace:
             return make_retrace();
         case Visibility::back_buffer:
-            return make_back_buffer();
+            return make_back_buffer(parts.world, FrameClock{parts.frames_per_second()});
         case Visibility::temporal_graph:
             return make_temporal_graph(parts.world, FrameClock{parts.frames_per_second()});
         case Visibility::events:

@@ -23,7 +23,12 @@ struct Window {
 class Events : public VisibilityStrategy {
   public:
     Events(const World& world, const FrameClock& clock, const EventsConfig& config)
-        : world_(world), trees_(make_actor_trees(world)), clock_(clock), config_(config), own_(world), own_light_(world) {
+        : world_(world),
+          trees_(make_actor_trees(world)),
+          clock_(clock),
+          config_(config),
+          own_(world),
+          own_light_(world) {
         if (config.frames_per_window < 1 || config.frames_per_window > 4096)
             throw Error(ErrorKind::invalid_input, "frames_per_window", "must be 1 to 4096");
     }
@@ -135,7 +140,9 @@ class Events : public VisibilityStrategy {
 
 std::unique_ptr<VisibilityStrategy> make_events(const World& world, const FrameClock& clock,
                                                 const EventsConfig& config) {
-    return std::make_unique<Events>(world, clock, config);
+    auto events = std::make_unique<Events>(world, clock, config);
+    if (!anything_moves(world)) return make_back_buffer(world, clock);
+    return events;
 }
 
 }  // namespace afterglow

@@ -8,7 +8,7 @@ namespace afterglow {
 
 std::uint64_t OwnLightLines::update(const LineScene& scene, VisibleLines& visible, const Context& context) {
     if (scene.light.lines_per_patch() == 0) return 0;
-    if (!actors_) begin(scene);
+    if (has_lamp_.empty()) begin(scene);
     forget_what_moved(scene);
     std::atomic<std::uint64_t> traced = 0;
     context.for_chunks(known_.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -19,10 +19,13 @@ std::uint64_t OwnLightLines::update(const LineScene& scene, VisibleLines& visibl
             for (Index k = 0; k < scene.light.lines_per_patch(); ++k) {
                 if (b.body == furniture && scene.mesh.body[scene.light.lamp_patch(block, k)] == furniture)
                     continue;
-                if (known_[i] != Known::all) rays += learn(scene, block, k, known_[i] == Known::background);
-                const std::size_t line = scene.light.line(b, k, 0);
-                std::copy_n(all_.begin() + static_cast<std::ptrdiff_t>(line - first_line_), b.count,
-                            visible.light_contribution.begin() + static_cast<std::ptrdiff_t>(line));
+                const Index same = scene.light.first_same(b, k);
+                if (known_[i] != Known::all && same == k)
+                    rays += learn(scene, block, k, known_[i] == Known::background);
+                const auto from = static_cast<std::ptrdiff_t>(scene.light.line(b, same, 0) - first_line_);
+                std::copy_n(all_.begin() + from, b.count,
+                            visible.light_contribution.begin() +
+                                static_cast<std::ptrdiff_t>(scene.light.line(b, k, 0)));
             }
             known_[i] = Known::all;
         }
@@ -32,8 +35,7 @@ std::uint64_t OwnLightLines::update(const LineScene& scene, VisibleLines& visibl
 }
 
 void OwnLightLines::begin(const LineScene& scene) {
-    actors_.emplace(world_, 2 * scene.sight.lift_m());
-    has_lamp_.assign(world_.bodies.size(), 0);
+    has_lamp_.assign(actors_.bodies(), 0);
     bool lamps_move = false;
     for (std::size_t block = 0; block < scene.sight.blocks().size(); ++block) {
         for (Index k = 0; k < scene.light.lines_per_patch(); ++k) {
@@ -53,14 +55,14 @@ void OwnLightLines::begin(const LineScene& scene) {
 }
 
 void OwnLightLines::forget_what_moved(const LineScene& scene) {
-    actors_->place(scene.caster);
-    if (!actors_->any_moved()) return;
+    actors_.place(scene.caster);
+    if (!actors_.any_moved()) return;
     bool lamp_moved = false;
-    for (Index body = 1; body < actors_->bodies(); ++body)
-        lamp_moved = lamp_moved || (actors_->moved(body) && has_lamp_[body] != 0);
+    for (Index body = 1; body < actors_.bodies(); ++body)
+        lamp_moved = lamp_moved || (actors_.moved(body) && has_lamp_[body] != 0);
     for (std::size_t i = 0; i < known_.size(); ++i) {
         const Index body = scene.sight.blocks()[first_block_ + i].body;
-        const bool ends_moved = lamp_moved || actors_->moved(body);
+        const bool ends_moved = lamp_moved || actors_.moved(body);
         known_[i] = ends_moved || known_[i] == Known::nothing ? Known::nothing : Known::background;
     }
 }
@@ -86,9 +88,9 @@ std::uint64_t OwnLightLines::learn(const LineScene& scene, std::size_t block, In
     std::uint64_t rays = 0;
     if (open != 0) lines.prepare();
     const auto hide_behind = [&](bool ends) {
-        for (Index body = 1; body < actors_->bodies() && open != 0; ++body) {
+        for (Index body = 1; body < actors_.bodies() && open != 0; ++body) {
             if ((body == b.body || body == lamp_body) != ends) continue;
-            const auto [traced, hidden] = actors_->hide(lines, open, body, scene.caster);
+            const auto [traced, hidden] = actors_.hide(lines, open, body, scene.caster);
             rays += static_cast<std::uint64_t>(std::popcount(traced));
             open &= ~hidden;
         }

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "solver/visibility/placed_actors.h"
 #include "solver/visibility/strategy.h"
 
@@ -13,7 +11,8 @@ namespace afterglow {
 /// meets their boxes. What stands as it stood is not traced. One thread at a time.
 class OwnLightLines {
   public:
-    explicit OwnLightLines(const World& world) : world_(world) {}
+    /// Keeps no reference to the world.
+    explicit OwnLightLines(const World& world) : actors_(world) {}
 
     /// Brings them up to date in `visible`. Returns the number of rays. Always asked for the same lines.
     /// Errors: cancelled, after which the next call goes on.
@@ -26,8 +25,7 @@ class OwnLightLines {
     void forget_what_moved(const LineScene& scene);
     std::uint64_t learn(const LineScene& scene, std::size_t block, Index k, bool background_is_known);
 
-    const World& world_;
-    std::optional<PlacedActors> actors_;
+    PlacedActors actors_;
     std::vector<char> has_lamp_;   ///< by body
     std::size_t first_block_ = 0;  ///< with lines that move
     std::size_t first_line_ = 0;   ///< its first

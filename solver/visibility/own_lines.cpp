@@ -23,8 +23,7 @@ std::uint64_t OwnLines::update(const LineScene& scene, const DirectionRange& ran
 
 void OwnLines::forget_what_moved(const LineScene& scene) {
     const std::size_t first = scene.sight.static_blocks();
-    if (!actors_) {
-        actors_.emplace(world_, 2 * scene.sight.lift_m());
+    if (known_.empty()) {
         known_.resize(scene.sight.blocks().size() - first);
         const std::size_t lines = index(scene, {scene.mesh.size(), 0, 1}, 0);
         for (LineTargets* kept : {&alone_, &background_}) {
@@ -33,11 +32,11 @@ void OwnLines::forget_what_moved(const LineScene& scene) {
         }
         all_.resize(lines);
     }
-    actors_->place(scene.caster);
-    if (!actors_->any_moved()) return;
+    actors_.place(scene.caster);
+    if (!actors_.any_moved()) return;
     for (std::size_t b = 0; b < known_.size(); ++b) {
         known_[b].all = 0;
-        if (actors_->moved(scene.sight.blocks()[first + b].body)) known_[b].background = 0;
+        if (actors_.moved(scene.sight.blocks()[first + b].body)) known_[b].background = 0;
     }
 }
 
@@ -57,13 +56,13 @@ std::uint64_t OwnLines::learn(const LineScene& scene, std::size_t block, Index l
             rays += look_at_furniture(scene, lines, at);
         }
         std::copy_n(background_.patch.begin() + offset, b.count, all_.begin() + offset);
-        if (actors_->bodies() == 2) continue;
+        if (actors_.bodies() == 2) continue;
         std::copy_n(background_.distance.begin() + offset, b.count, lines.rays.far.begin());
         lines.prepare();
-        for (Index body = 1; body < actors_->bodies(); ++body)
+        for (Index body = 1; body < actors_.bodies(); ++body)
             if (body != b.body)
                 rays += static_cast<std::uint64_t>(
-                    std::popcount(actors_->look(lines, body, scene.mesh, scene.caster, &all_[at])));
+                    std::popcount(actors_.look(lines, body, scene.mesh, scene.caster, &all_[at])));
     }
     known = {std::max(known.alone, last), std::max(known.background, last), std::max(known.all, last)};
     return rays;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "solver/visibility/placed_actors.h"
 #include "solver/visibility/strategy.h"
 
@@ -14,7 +12,8 @@ namespace afterglow {
 /// time.
 class OwnLines {
   public:
-    explicit OwnLines(const World& world) : world_(world) {}
+    /// Keeps no reference to the world.
+    explicit OwnLines(const World& world) : actors_(world) {}
 
     /// Brings directions [range.first, range.last) up to date in `visible`. Returns the number of rays.
     /// Always asked for the same lines. Errors: cancelled, after which the next call goes on.
@@ -40,8 +39,7 @@ class OwnLines {
                std::size_t{d} * block.count;
     }
 
-    const World& world_;
-    std::optional<PlacedActors> actors_;
+    PlacedActors actors_;
     std::vector<Known> known_;  ///< by block, the first actor's first
     LineTargets alone_;         ///< what each line meets of its own body
     LineTargets background_;    ///< of its own body and the furniture

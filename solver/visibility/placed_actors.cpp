@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "solver/mesh/lift.h"
 #include "solver/visibility/sight_lines.h"
 #include "solver/visibility/spacetime_extent.h"
 
@@ -21,8 +22,9 @@ LinePacket in_body(const LinePacket& lines, std::uint32_t lanes, const Pose& pos
 
 }  // namespace
 
-PlacedActors::PlacedActors(const World& world, float slack_m)
-    : boxes_(world.bodies.size()), moved_(world.bodies.size(), 0), slack_m_(slack_m) {
+// Lines may be off by rounding, less than they are lifted off surfaces for it.
+PlacedActors::PlacedActors(const World& world)
+    : boxes_(world.bodies.size()), moved_(world.bodies.size(), 0), slack_m_(2 * lift_for(world)) {
     for (Index b = 0; b < world.bodies.size(); ++b) {
         Box& box = local_boxes_.emplace_back();
         if (b == furniture) continue;

@@ -11,8 +11,8 @@ namespace afterglow {
 /// Thread-safety: const calls are pure.
 class PlacedActors {
   public:
-    /// `slack_m`: how far lines may be off by rounding.
-    PlacedActors(const World& world, float slack_m);
+    /// Keeps no reference to the world.
+    explicit PlacedActors(const World& world);
 
     /// Takes the actors' places from the caster. All count as moved the first time.
     void place(const RayCaster& caster);

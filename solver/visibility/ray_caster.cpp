@@ -148,9 +148,9 @@ struct RayCaster::Scenes {
     void found(const RTCRayHit16& query, const RayPacket& rays, HitPacket& hits) const {
         for (std::size_t k = 0; k < rays.count; ++k) {
             const Vec3 normal(query.hit.Ng_x[k], query.hit.Ng_y[k], query.hit.Ng_z[k]);
-            hits[k] = found({query.hit.geomID[k], query.hit.instID[0][k], query.hit.primID[k],
-                             query.ray.tfar[k], query.hit.u[k], query.hit.v[k], normal,
-                             rays.ray(k).direction});
+            hits[k] =
+                found({query.hit.geomID[k], query.hit.instID[0][k], query.hit.primID[k], query.ray.tfar[k],
+                       query.hit.u[k], query.hit.v[k], normal, rays.ray(k).direction});
         }
     }
 
@@ -250,9 +250,8 @@ struct NearestQuery {
 
 void RayCaster::nearest(const RayPacket& rays, Scope scope, HitPacket& hits) const {
     NearestQuery query(rays);
-    scenes_->for_scenes(
-        scope, RTC_INTERSECT_CONTEXT_FLAG_COHERENT,
-        [&](RTCScene scene, RTCIntersectContext* context) { query.trace(scene, context); });
+    scenes_->for_scenes(scope, RTC_INTERSECT_CONTEXT_FLAG_COHERENT,
+                        [&](RTCScene scene, RTCIntersectContext* context) { query.trace(scene, context); });
     scenes_->found(query.hit, rays, hits);
 }
 

@@ -11,17 +11,12 @@ constexpr std::size_t blocks_per_chunk = 4;
 
 }  // namespace
 
-namespace {
-
-/// As many repeats as are allowed and give every line the same weight.
 Index different_moving_lines(Index lines_per_patch, const MovingLinesConfig& moving) {
     for (Index repeats = moving.repeats; repeats > 1; --repeats)
         if (lines_per_patch % repeats == 0 && lines_per_patch / repeats >= moving.fewest)
             return lines_per_patch / repeats;
     return lines_per_patch;
 }
-
-}  // namespace
 
 SightLines::SightLines(const PatchMesh& mesh, const World& world, Index lines_per_patch, std::uint64_t seed,
                        const MovingLinesConfig& moving)
@@ -122,34 +117,6 @@ std::uint64_t trace_lines(const SightLines& lines, const PatchMesh& mesh, const 
             }
             traced += count;
         });
-    return traced;
-}
-
-std::uint64_t trace_over_background(const SightLines& lines, const PatchMesh& mesh, const RayCaster& caster,
-                                    const LineTargets& background, const DirectionRange& range,
-                                    std::span<Index> visible, const Context& context) {
-    std::atomic<std::uint64_t> traced = 0;
-    context.for_chunks(lines.static_blocks(), blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
-        RayPacket rays;
-        HitPacket hits;
-        std::uint64_t count = 0;
-        for (std::size_t b = begin; b < end; ++b) {
-            const PatchBlock& block = lines.blocks()[b];
-            for (Index d = range.first; d < range.last; ++d) {
-                lines.rays(b, d, Pose{}, rays);
-                const std::size_t first = lines.line(block, d, 0);
-                std::copy_n(background.distance.begin() + static_cast<std::ptrdiff_t>(first), block.count,
-                            rays.far.begin());
-                caster.nearest(rays, Scope::actors, hits);
-                for (Index lane = 0; lane < block.count; ++lane)
-                    visible[first + lane] = hits[lane].body == no_index
-                                                ? background.patch[first + lane]
-                                                : target_of(hits[lane], rays.ray(lane), mesh, caster);
-                count += block.count;
-            }
-        }
-        traced += count;
-    });
     return traced;
 }
 

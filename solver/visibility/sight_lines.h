@@ -26,9 +26,13 @@ struct PatchBlock {
 /// How many of an actor's lines are lines of their own. Static patches are traced once, actors' at every
 /// frame.
 struct MovingLinesConfig {
-    Index repeats = 4;   ///< at most so many lines of a moving patch are one and the same, 1 or more
-    Index fewest = 64;   ///< no fewer lines of their own than this are left to a patch by repeating
+    Index repeats = 4;  ///< at most so many lines of a moving patch are one and the same, 1 or more
+    Index fewest = 64;  ///< no fewer lines of their own than this are left to a patch by repeating
 };
+
+/// How many of a moving patch's lines differ: as few as allowed such that every one of them is repeated
+/// equally often.
+Index different_moving_lines(Index lines_per_patch, const MovingLinesConfig& moving);
 
 /// The sight lines of all patches. Rays are never stored: line d of a patch follows from the patch's block, d
 /// and the seed. Line (block, d, lane) has the index block.first · D + d · block.count + lane, so that the
@@ -94,7 +98,8 @@ struct LineRange {
 };
 
 /// Traces lines against the furniture and, with Scope::everything, the actors, and writes what they see.
-/// Lines that are one and the same are traced once where all are in the range. Returns the number of rays. Errors: cancelled.
+/// Lines that are one and the same are traced once where all are in the range. Returns the number of rays.
+/// Errors: cancelled.
 std::uint64_t trace_lines(const SightLines& lines, const PatchMesh& mesh, const RayCaster& caster,
                           Scope scope, const LineRange& range, const LineSinks& sinks,
                           const Context& context);
@@ -103,12 +108,5 @@ std::uint64_t trace_lines(const SightLines& lines, const PatchMesh& mesh, const 
 struct DirectionRange {
     Index first = 0, last = 0;
 };
-
-/// Lines of static receivers against the actors only, up to their static background: writes the actor patch
-/// where one is nearer, the background otherwise. Returns the number of rays. Source: Baum et al. 1986.
-/// Errors: cancelled.
-std::uint64_t trace_over_background(const SightLines& lines, const PatchMesh& mesh, const RayCaster& caster,
-                                    const LineTargets& background, const DirectionRange& range,
-                                    std::span<Index> visible, const Context& context);
 
 }  // namespace afterglow

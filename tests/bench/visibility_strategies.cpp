@@ -71,11 +71,11 @@ struct Row {
 /// Sight lines of static patches only, which is where the strategies differ.
 void compare_static_lines(Room& room, const FrameClock& clock, int frames, const Context& context) {
     const Index lines = room.sight.lines_per_patch();
-    Row retrace{"retrace"}, back_buffer{"back-buffer"}, events{"events"};
+    Row retrace{"retrace"}, events{"events"};
     const double static_ms = ms_of([&] {
         extend_static_lines(room.background, room.mesh, room.sight, room.light, room.caster, lines, context);
     });
-    std::vector<Index> anew(std::size_t{room.mesh.size()} * lines), over(anew), shown(anew), before;
+    std::vector<Index> anew(std::size_t{room.mesh.size()} * lines), shown(anew), before;
     const ActorTrees trees = make_actor_trees(room.world);
     std::uint64_t changes = 0, k = 0, events_applied = 0, different = 0, lines_that_change = 0;
     std::vector<char> cut(room.static_lines(), 0);
@@ -112,10 +112,6 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
             continue;
         }
         retrace.frame_ms.push_back(retrace_ms);
-        back_buffer.frame_ms.push_back(ms_of([&] {
-            trace_over_background(room.sight, room.mesh, room.caster, room.background.background, {0, lines},
-                                  over, context);
-        }));
         for (std::size_t line = 0; line < room.static_lines(); ++line) {
             changes += anew[line] != before[line] ? 1U : 0U;
             different += anew[line] != shown[line] ? 1U : 0U;
@@ -134,7 +130,7 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
         retrace.frame_ms.size(), static_cast<unsigned long long>(changes), static_cast<unsigned long long>(k),
         static_cast<unsigned long long>(different));
     std::printf("%-14s %12s %12s %10s %14s\n", "strategy", "ahead, ms", "frame, ms", "ratio", "whole, ratio");
-    for (const Row* row : {&retrace, &back_buffer, &events}) {
+    for (const Row* row : {&retrace, &events}) {
         const double frame_ms = median(row->frame_ms);
         const double fixed = row == &retrace ? 0 : static_ms + row->ahead_ms;
         std::printf("%-14s %12.1f %12.3f %10.1f %14.1f\n", row->name, row->ahead_ms, frame_ms,
@@ -166,10 +162,9 @@ void compare_own_lines(Room& room, const FrameClock& clock, int frames, const Co
             room.caster.set_poses(poses_at(room.world, clock.time_of(f)));
             const LineScene scene{room.mesh, sight, room.light, room.caster, room.background, f};
             anew_ms.push_back(ms_of([&] {
-                anew_rays += static_cast<double>(
-                    trace_lines(sight, room.mesh, room.caster, Scope::everything,
-                                {sight.static_blocks(), sight.blocks().size(), 0, lines},
-                                {seen.patch, {}}, context));
+                anew_rays += static_cast<double>(trace_lines(
+                    sight, room.mesh, room.caster, Scope::everything,
+                    {sight.static_blocks(), sight.blocks().size(), 0, lines}, {seen.patch, {}}, context));
             }));
             kept_ms.push_back(ms_of([&] {
                 const auto rays = own.update(scene, {0, lines}, seen, context);
@@ -179,27 +174,27 @@ void compare_own_lines(Room& room, const FrameClock& clock, int frames, const Co
         print(("1 line in " + std::to_string(repeats)).c_str(), anew_rays / shots, anew_ms,
               kept_rays / (shots - 1), kept_ms);
     }
-    OwnLightLines own(room.world);
-    std::vector<double> anew_ms, kept_ms;
-    double anew_rays = 0, kept_rays = 0;
-    for (const int f : sampled) {
-        room.caster.set_poses(poses_at(room.world, clock.time_of(f)));
-        const LineScene scene{room.mesh, room.sight, room.light, room.caster, room.background, f};
-        anew_ms.push_back(ms_of([&] {
-            anew_rays += static_cast<double>(trace_moving_light_lines(
-                room.light, room.sight, room.mesh, room.caster, seen.light_contribution, context));
-        }));
-        kept_ms.push_back(
-            ms_of([&] { kept_rays += static_cast<double>(own.update(scene, seen, context)); }));
+    // Their own light lines, of which one in so many differs.
+    for (const Index repeats : {1U, 2U, 4U}) {
+        const LightLines light(room.mesh, room.sight, room.lamps, room.light.lines_per_patch(), 2,
+                               {repeats, 1});
+        OwnLightLines own(room.world);
+        std::vector<double> kept_ms;
+        double rays = 0;
+        for (const int f : sampled) {
+            room.caster.set_poses(poses_at(room.world, clock.time_of(f)));
+            const LineScene scene{room.mesh, room.sight, light, room.caster, room.background, f};
+            kept_ms.push_back(ms_of([&] { rays += static_cast<double>(own.update(scene, seen, context)); }));
+        }
+        std::printf("light lines, 1 in %u %47.0f %10.2f\n", repeats, rays / shots, median(kept_ms));
     }
-    print("light lines", anew_rays / shots, anew_ms, kept_rays / shots, kept_ms);
 }
 
 /// Everything a frame looks along: actors' own lines and light lines, too.
 void compare_whole_frames(Room& room, const FrameClock& clock, int frames, const Context& context) {
     VisibleLines visible = make_visible_lines(room.mesh, room.sight, room.light);
-    const auto events = make_events(room.world, clock, {window}), back_buffer = make_back_buffer(),
-               retrace = make_retrace();
+    const auto events = make_events(room.world, clock, {window}),
+               back_buffer = make_back_buffer(room.world, clock), retrace = make_retrace();
     const auto temporal_graph = make_temporal_graph(room.world, clock);
     Row rows[4] = {{"retrace"}, {"back-buffer"}, {"temporal-graph"}, {"events"}};
     VisibilityStrategy* strategies[4] = {retrace.get(), back_buffer.get(), temporal_graph.get(),
