@@ -1,5 +1,6 @@
 #include "solver/formfactor/two_halves.h"
 
+#include <algorithm>
 #include <array>
 
 namespace afterglow {
@@ -28,11 +29,13 @@ std::vector<Rgb> half_differences(const SightLines& lines, const Lamps& lamps, c
     };
     const auto of_lane = [&](const PatchBlock& block, Index lane) {
         std::array<Half, 2> halves;
-        for (Index d = 0; d < seen.directions; ++d) {
+        // Lines that are one and the same say nothing of each other's noise.
+        const Index directions = std::min(seen.directions, lines.different_lines(block));
+        for (Index d = 0; d < directions; ++d) {
             const Index target = seen.visible[lines.line(block, d, lane)];
             const bool leaves = target == sees_nothing;
             if (target == sees_inside || (!leaves && lamps.lamp_of_patch[target] != no_index)) continue;
-            Half& half = halves[2 * d < seen.directions ? 0 : 1];
+            Half& half = halves[2 * d < directions ? 0 : 1];
             half.sum += leaves ? outside : radiosity[target];
             half.count += 1;
         }

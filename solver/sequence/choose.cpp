@@ -51,7 +51,7 @@ std::unique_ptr<VisibilityStrategy> make_strategy(Visibility visibility, const W
         case Visibility::retrace:
             return make_retrace();
         case Visibility::back_buffer:
-            return make_back_buffer();
+            return make_back_buffer(world, clock);
         case Visibility::temporal_graph:
             return make_temporal_graph(world, clock);
         case Visibility::events:

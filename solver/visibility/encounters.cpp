@@ -6,6 +6,8 @@ namespace afterglow {
 
 namespace {
 
+constexpr std::size_t blocks_per_chunk = 4;
+
 /// The first and the last slice in which some line meets the extent.
 void widen(const LinePacket& lines, const SpacetimeExtent& extent, const TimeTree& times, std::size_t node,
            Encounter& encounter) {
@@ -70,6 +72,34 @@ void find_light_encounters(const LightLines& light, const SightLines& sight, con
         lines.prepare();
         add_encounters(lines, k, actors, times, out);
     }
+}
+
+void extend_encounters(const EncounterScene& scene, const DirectionRange& range,
+                       std::vector<BlockEncounters>& encounters, const Context& context) {
+    encounters.resize(scene.sight.static_blocks());
+    if (scene.actors.empty() || range.first >= range.last) return;
+    context.for_chunks(encounters.size(), blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            std::vector<Encounter>& known = encounters[b].sight;
+            while (!known.empty() && known.back().direction >= range.first) known.pop_back();
+            find_encounters(scene.sight, b, scene.background.background, range, scene.actors, scene.times,
+                            known);
+        }
+    });
+}
+
+void find_light_encounters(const EncounterScene& scene, std::vector<BlockEncounters>& encounters,
+                           const Context& context) {
+    encounters.resize(scene.sight.static_blocks());
+    if (scene.actors.empty()) return;
+    context.for_chunks(encounters.size(), blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            encounters[b].light.clear();
+            find_light_encounters(scene.light, scene.sight, scene.mesh, b, scene.placed,
+                                  scene.background.light_contribution, scene.actors, scene.times,
+                                  encounters[b].light);
+        }
+    });
 }
 
 }  // namespace afterglow

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "solver/visibility/light_lines.h"
@@ -23,6 +24,42 @@ struct Encounter {
 struct BlockEncounters {
     std::vector<Encounter> sight, light;
 };
+
+/// What encounters are found for and with.
+struct EncounterScene {
+    const PatchMesh& mesh;
+    const SightLines& sight;
+    const LightLines& light;
+    const RayCaster& placed;  ///< may have any poses
+    const StaticLines& background;
+    std::span<const SpacetimeExtent> actors;
+    const TimeTree& times;
+};
+
+/// Encounters of all static blocks, `encounters` being empty or what earlier calls left: sight lines of
+/// directions `range`, whatever was known of them and later ones being forgotten. Errors: cancelled, after
+/// which the same call makes up for it.
+void extend_encounters(const EncounterScene& scene, const DirectionRange& range,
+                       std::vector<BlockEncounters>& encounters, const Context& context);
+/// The same for all light lines to static lamps.
+void find_light_encounters(const EncounterScene& scene, std::vector<BlockEncounters>& encounters,
+                           const Context& context);
+
+/// Calls `body(direction, due encounters)` for every packet in the range of which some encounter is due.
+template <class Body>
+void for_due_packets(std::span<const Encounter> encounters, const DirectionRange& range, std::size_t slice,
+                     const Body& body) {
+    std::vector<Encounter> due;
+    auto at = std::partition_point(encounters.begin(), encounters.end(),
+                                   [&](const Encounter& e) { return e.direction < range.first; });
+    while (at != encounters.end() && at->direction < range.last) {
+        const Index direction = at->direction;
+        due.clear();
+        for (; at != encounters.end() && at->direction == direction; ++at)
+            if (at->during(slice)) due.push_back(*at);
+        if (!due.empty()) body(direction, std::span<const Encounter>(due));
+    }
+}
 
 /// Appends those of sight lines [range.first, range.last) of a static block; their backgrounds must be known.
 void find_encounters(const SightLines& sight, std::size_t block, const LineTargets& background,

@@ -6,6 +6,8 @@
 
 #include "solver/base/error.h"
 #include "solver/visibility/line_events.h"
+#include "solver/visibility/own_light_lines.h"
+#include "solver/visibility/own_lines.h"
 
 namespace afterglow {
 
@@ -26,7 +28,12 @@ struct Window {
 class Events : public VisibilityStrategy {
   public:
     Events(const World& world, const FrameClock& clock, const EventsConfig& config)
-        : world_(world), trees_(make_actor_trees(world)), clock_(clock), config_(config) {
+        : world_(world),
+          trees_(make_actor_trees(world)),
+          clock_(clock),
+          config_(config),
+          own_(world),
+          own_light_(world) {
         if (config.frames_per_window < 1 || config.frames_per_window > 4096)
             throw Error(ErrorKind::invalid_input, "frames_per_window", "must be 1 to 4096");
         if (config.frames_of_first_window < 1)
@@ -51,7 +58,9 @@ class Events : public VisibilityStrategy {
             move_to(scene, visible);
         if (range.last > window_->directions) extend(scene, range.last, visible, context);
         shown_ = scene.frame;
-        return trace_actors_lines(scene, range, visible, context);
+        std::uint64_t rays = own_.update(scene, range, visible, context);
+        if (range.first == 0) rays += own_light_.update(scene, visible, context);
+        return rays;
     }
 
   private:
@@ -149,18 +158,6 @@ class Events : public VisibilityStrategy {
             work_ahead_.back().time += time;
     }
 
-    static std::uint64_t trace_actors_lines(const LineScene& scene, const DirectionRange& range,
-                                            VisibleLines& visible, const Context& context) {
-        const LineRange lines{scene.sight.static_blocks(), scene.sight.blocks().size(), range.first,
-                              range.last};
-        std::uint64_t rays = trace_lines(scene.sight, scene.mesh, scene.caster, Scope::everything, lines,
-                                         LineSinks{visible.patch, {}}, context);
-        if (range.first == 0)
-            rays += trace_moving_light_lines(scene.light, scene.sight, scene.mesh, scene.caster,
-                                             visible.light_contribution, context);
-        return rays;
-    }
-
     const World& world_;
     ActorTrees trees_;
     FrameClock clock_;
@@ -171,6 +168,8 @@ class Events : public VisibilityStrategy {
     std::vector<WorkAhead> work_ahead_;
     bool changes_known_ = false;  ///< since somebody first asked, unless lines were brought anywhere at once
     LineChanges changes_;
+    OwnLines own_;
+    OwnLightLines own_light_;
 };
 
 }  // namespace
@@ -189,7 +188,9 @@ FrameSpan event_window(int frame, int start, const EventsConfig& config) {
 
 std::unique_ptr<VisibilityStrategy> make_events(const World& world, const FrameClock& clock,
                                                 const EventsConfig& config) {
-    return std::make_unique<Events>(world, clock, config);
+    auto events = std::make_unique<Events>(world, clock, config);
+    if (!anything_moves(world)) return make_back_buffer(world, clock);
+    return events;
 }
 
 }  // namespace afterglow

@@ -21,10 +21,10 @@ FrameSpan event_window(int frame, int start, const EventsConfig& config);
 /// Finds, for a window of frames at once, in which frame each line of a static patch comes to see something
 /// else; a frame then touches the lines that change and no others. Frames may be asked for in any order; one
 /// outside the window begins a new one. The static patches' lines see what `retrace` shows them, ties aside;
-/// actors' own lines are traced anew. `visible` must be given back as the call before left it. Keeps
-/// references to its arguments. Errors: invalid_input for
-/// windows without frames. Of update: too_large past 2³² lines; cancelled, after which the next
-/// call begins anew.
+/// actors' own lines, too, see own_lines.h. Where nothing ever moves it is `back-buffer`, without a window.
+/// `visible` must be given back as the call before left it. Keeps references to its arguments. Errors:
+/// invalid_input for windows without frames. Of update: too_large past 2³² lines; cancelled, after which the
+/// next call begins anew.
 std::unique_ptr<VisibilityStrategy> make_events(const World& world, const FrameClock& clock,
                                                 const EventsConfig& config = {});
 

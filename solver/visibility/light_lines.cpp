@@ -7,18 +7,22 @@
 namespace afterglow {
 
 LightLines::LightLines(const PatchMesh& mesh, const SightLines& lines, const Lamps& lamps,
-                       Index lines_per_patch, std::uint64_t seed)
+                       Index lines_per_patch, std::uint64_t seed, const MovingLinesConfig& moving)
     : mesh_(&mesh),
       lines_(&lines),
       lamps_(&lamps),
       lines_per_patch_(lamps.patches.empty() ? 0 : lines_per_patch),
       seed_(seed),
-      points_(lines_per_patch) {}
+      points_(lines_per_patch) {
+    if (lines_per_patch_ > 0) repeats_ = lines_per_patch_ / different_moving_lines(lines_per_patch_, moving);
+}
 
 LightLines::Choice LightLines::choose(std::size_t block, Index k) const {
     // Systematic sampling: one shift a block, then equal steps through the lamps' power.
     const float shift = static_cast<float>(mixed(seed_, block) >> 40U) * 0x1p-24F;
-    const float at = (static_cast<float>(k) + shift) / static_cast<float>(lines_per_patch_);
+    const Index repeats = lines_->blocks()[block].body == furniture ? 1 : repeats_;
+    const auto sample = static_cast<float>(k / repeats);
+    const float at = (sample + shift) * static_cast<float>(repeats) / static_cast<float>(lines_per_patch_);
     const auto& cumulative = lamps_->cumulative_power;
     const auto found = std::upper_bound(cumulative.begin(), cumulative.end() - 1, at);
     const auto entry = static_cast<std::size_t>(found - cumulative.begin());
@@ -33,7 +37,8 @@ void LightLines::rays(std::size_t block, Index k, const RayCaster& placed, RayPa
                       std::array<float, 16>& contribution) const {
     const PatchBlock& b = lines_->blocks()[block];
     const Choice choice = choose(block, k);
-    const Sample4 sample = points_.at(k, mixed(seed_, block + 1));
+    const Index repeats = b.body == furniture ? 1 : repeats_;
+    const Sample4 sample = points_.at(k / repeats, mixed(seed_, block + 1));
     const Pose& lamp_pose = placed.pose(mesh_->body[choice.patch]);
     PatchPoint lamp = mesh_->point_on(choice.patch, sample[0], sample[1]);
     lamp = {lamp_pose.point(lamp.position), lamp_pose.direction(lamp.normal)};
@@ -59,6 +64,8 @@ void LightLines::rays(std::size_t block, Index k, const RayCaster& placed, RayPa
 
 namespace {
 
+constexpr std::size_t blocks_per_chunk = 4;
+
 /// Zero contributions need no tracing: a lane is switched off by ending its ray where it starts.
 Index switch_off_dark(RayPacket& rays, const std::array<float, 16>& contribution) {
     Index alive = 0;
@@ -71,72 +78,46 @@ Index switch_off_dark(RayPacket& rays, const std::array<float, 16>& contribution
     return alive;
 }
 
-/// How one sample of a block is traced.
-enum class Trace {
-    nothing,          ///< not at all: what is known stands
-    static_geometry,  ///< against the furniture
-    everything,       ///< against furniture and actors
-    over_background,  ///< against the actors only, where the furniture leaves it open
-};
-
-/// Traces the samples of blocks [0, blocks) as `how(block, lamp patch)` says.
-template <class How>
-std::uint64_t trace_samples(const LightLines& light_lines, const SightLines& lines, const RayCaster& caster,
-                            std::size_t blocks, std::vector<float>& unblocked, const Context& context,
-                            const How& how) {
-    std::atomic<std::uint64_t> traced = 0;
-    const Index per_patch = light_lines.lines_per_patch();
-    context.for_chunks(per_patch > 0 ? blocks : 0, 4, [&](std::size_t begin, std::size_t end) {
-        RayPacket rays;
-        std::array<float, 16> contribution;
-        std::uint64_t count = 0;
-        for (std::size_t b = begin; b < end; ++b) {
-            const PatchBlock& block = lines.blocks()[b];
-            for (Index k = 0; k < per_patch; ++k) {
-                const Trace trace = how(block, light_lines.lamp_patch(b, k));
-                if (trace == Trace::nothing) continue;
-                light_lines.rays(b, k, caster, rays, contribution);
-                float* const result = &unblocked[light_lines.line(block, k, 0)];
-                if (trace == Trace::over_background) std::copy_n(result, block.count, contribution.begin());
-                const Index alive = switch_off_dark(rays, contribution);
-                const Scope against = trace == Trace::static_geometry   ? Scope::static_geometry
-                                      : trace == Trace::over_background ? Scope::actors
-                                                                        : Scope::everything;
-                const std::uint32_t blocked = alive == 0 ? 0 : caster.occluded(rays, against);
-                for (Index lane = 0; lane < block.count; ++lane)
-                    result[lane] = ((blocked >> lane) & 1U) != 0 ? 0.0F : contribution[lane];
-                count += alive;
-            }
+/// Traces the samples of one block. Returns the number of rays.
+std::uint64_t trace_block(const LightLines& light_lines, const SightLines& lines, const RayCaster& caster,
+                          Scope scope, std::size_t b, std::vector<float>& unblocked) {
+    RayPacket rays;
+    std::array<float, 16> contribution;
+    std::uint64_t count = 0;
+    const PatchBlock& block = lines.blocks()[b];
+    for (Index k = 0; k < light_lines.lines_per_patch(); ++k) {
+        float* const result = &unblocked[light_lines.line(block, k, 0)];
+        const Index same = light_lines.first_same(block, k);
+        if (same != k) {
+            std::copy_n(&unblocked[light_lines.line(block, same, 0)], block.count, result);
+            continue;
         }
-        traced += count;
-    });
-    return traced;
+        light_lines.rays(b, k, caster, rays, contribution);
+        const Index alive = switch_off_dark(rays, contribution);
+        const std::uint32_t blocked = alive == 0 ? 0 : caster.occluded(rays, scope);
+        for (Index lane = 0; lane < block.count; ++lane)
+            result[lane] = ((blocked >> lane) & 1U) != 0 ? 0.0F : contribution[lane];
+        count += alive;
+    }
+    return count;
 }
 
 }  // namespace
 
-std::uint64_t trace_light_lines(const LightLines& light_lines, const SightLines& lines, const PatchMesh& mesh,
+std::uint64_t trace_light_lines(const LightLines& light_lines, const SightLines& lines,
                                 const RayCaster& caster, Scope scope, std::vector<float>& unblocked,
                                 const Context& context) {
-    const bool static_only = scope == Scope::static_geometry;
-    return trace_samples(
-        light_lines, lines, caster, static_only ? lines.static_blocks() : lines.blocks().size(), unblocked,
-        context, [&](const PatchBlock& block, Index lamp) {
-            if (static_only) return Trace::static_geometry;
-            const bool known = block.body == furniture && mesh.body[lamp] == furniture;
-            return scope == Scope::actors && known ? Trace::over_background : Trace::everything;
-        });
-}
-
-std::uint64_t trace_moving_light_lines(const LightLines& light_lines, const SightLines& lines,
-                                       const PatchMesh& mesh, const RayCaster& caster,
-                                       std::vector<float>& unblocked, const Context& context) {
-    return trace_samples(light_lines, lines, caster, lines.blocks().size(), unblocked, context,
-                         [&](const PatchBlock& block, Index lamp) {
-                             return block.body == furniture && mesh.body[lamp] == furniture
-                                        ? Trace::nothing
-                                        : Trace::everything;
-                         });
+    if (light_lines.lines_per_patch() == 0) return 0;
+    const std::size_t blocks =
+        scope == Scope::static_geometry ? lines.static_blocks() : lines.blocks().size();
+    std::atomic<std::uint64_t> traced = 0;
+    context.for_chunks(blocks, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
+        std::uint64_t count = 0;
+        for (std::size_t b = begin; b < end; ++b)
+            count += trace_block(light_lines, lines, caster, scope, b, unblocked);
+        traced += count;
+    });
+    return traced;
 }
 
 }  // namespace afterglow

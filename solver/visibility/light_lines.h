@@ -13,13 +13,18 @@ namespace afterglow {
 class LightLines {
   public:
     LightLines(const PatchMesh& mesh, const SightLines& lines, const Lamps& lamps, Index lines_per_patch,
-               std::uint64_t seed);
+               std::uint64_t seed, const MovingLinesConfig& moving = {4, 16});
 
     /// L; 0 where the scene has no lamps.
     [[nodiscard]] Index lines_per_patch() const { return lines_per_patch_; }
     [[nodiscard]] std::size_t line(const PatchBlock& block, Index k, Index lane) const {
         return static_cast<std::size_t>(block.first) * lines_per_patch_ +
                static_cast<std::size_t>(k) * block.count + lane;
+    }
+
+    /// The first of the lines of a block that are one and the same as line k: k itself for static patches.
+    [[nodiscard]] Index first_same(const PatchBlock& block, Index k) const {
+        return block.body == furniture ? k : k - k % repeats_;
     }
 
     /// The lamp patch that line k of a block samples.
@@ -42,23 +47,16 @@ class LightLines {
     const SightLines* lines_;
     const Lamps* lamps_;
     Index lines_per_patch_;
+    Index repeats_ = 1;  ///< of every line of a moving patch; they stand together
     std::uint64_t seed_;
     SobolPoints points_;
 };
 
 /// Traces light lines and writes the contribution of each that is not blocked, 0 for the others.
-/// Scope::static_geometry: those of static receivers only, without actors. Scope::everything: all, traced
-/// anew. Scope::actors: `unblocked` holds the contributions without actors of static receivers; only their
-/// lines to static lamps that are not yet 0 are traced, against the actors alone, and everything else anew.
-/// Returns the number of rays. Errors: cancelled.
-std::uint64_t trace_light_lines(const LightLines& light_lines, const SightLines& lines, const PatchMesh& mesh,
+/// Scope::static_geometry: those of static receivers only, without actors; Scope::everything: all. Returns
+/// the number of rays. Errors: cancelled.
+std::uint64_t trace_light_lines(const LightLines& light_lines, const SightLines& lines,
                                 const RayCaster& caster, Scope scope, std::vector<float>& unblocked,
                                 const Context& context);
-
-/// Traces anew, against everything, the light lines that move from frame to frame: those of actors' patches,
-/// and those that end on an actor's lamp. Returns the number of rays. Errors: cancelled.
-std::uint64_t trace_moving_light_lines(const LightLines& light_lines, const SightLines& lines,
-                                       const PatchMesh& mesh, const RayCaster& caster,
-                                       std::vector<float>& unblocked, const Context& context);
 
 }  // namespace afterglow

@@ -53,6 +53,14 @@ std::vector<MotionSegment> motion_segments(const Path& path) {
     return segments;
 }
 
+bool anything_moves(const World& world) {
+    return std::any_of(world.bodies.begin() + 1, world.bodies.end(), [](const Body& body) {
+        const auto& keys = body.path.keys;
+        return std::any_of(keys.begin(), keys.end(),
+                           [&](const Key<Pose>& key) { return !(key.value == keys.front().value); });
+    });
+}
+
 std::vector<SteadyFrames> steady_frames(const Path& path, const FrameClock& clock, const FrameSpan& range) {
     std::vector<SteadyFrames> parts;
     for (const MotionSegment& segment : motion_segments(path)) {

@@ -26,6 +26,9 @@ struct MotionSegment {
 /// rest next to each other are one. Thread-safety: pure.
 std::vector<MotionSegment> motion_segments(const Path& path);
 
+/// Whether anything of a world is ever elsewhere than at another time. Thread-safety: pure.
+bool anything_moves(const World& world);
+
 /// Which times a sequence's frames show.
 struct FrameClock {
     double frames_per_second = 24;

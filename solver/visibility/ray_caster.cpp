@@ -145,6 +145,15 @@ struct RayCaster::Scenes {
         return out;
     }
 
+    void found(const RTCRayHit16& query, const RayPacket& rays, HitPacket& hits) const {
+        for (std::size_t k = 0; k < rays.count; ++k) {
+            const Vec3 normal(query.hit.Ng_x[k], query.hit.Ng_y[k], query.hit.Ng_z[k]);
+            hits[k] =
+                found({query.hit.geomID[k], query.hit.instID[0][k], query.hit.primID[k], query.ray.tfar[k],
+                       query.hit.u[k], query.hit.v[k], normal, rays.ray(k).direction});
+        }
+    }
+
     /// Calls `trace(scene, context)` for each scene that is meant. `flags` go for the furniture;
     /// Embree 3.13's coherent packets can loop for ever in a scene of instances when only some lanes are
     /// live, so actors never get them.
@@ -218,25 +227,55 @@ bool RayCaster::occluded(const Ray& ray, Scope scope) const {
     return query.tfar < 0;
 }
 
-void RayCaster::nearest(const RayPacket& rays, Scope scope, HitPacket& hits) const {
-    RTCRayHit16 query;
+namespace {
+
+/// Sixteen rays as Embree takes them, and what it finds.
+struct NearestQuery {
+    RTCRayHit16 hit;
     alignas(64) std::array<int, 16> valid;
-    to_embree(rays, query.ray, valid);
-    for (std::size_t k = 0; k < 16; ++k) {
-        query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-        query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+
+    explicit NearestQuery(const RayPacket& rays) {
+        to_embree(rays, hit.ray, valid);
+        for (std::size_t k = 0; k < 16; ++k) {
+            hit.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+            hit.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+        }
     }
+    void trace(RTCScene scene, RTCIntersectContext* context) {
+        rtcIntersect16(valid.data(), scene, context, &hit);
+    }
+};
+
+}  // namespace
+
+void RayCaster::nearest(const RayPacket& rays, Scope scope, HitPacket& hits) const {
+    NearestQuery query(rays);
     scenes_->for_scenes(scope, RTC_INTERSECT_CONTEXT_FLAG_COHERENT,
-                        [&](RTCScene scene, RTCIntersectContext* context) {
-                            rtcIntersect16(valid.data(), scene, context, &query);
-                        });
-    for (std::size_t k = 0; k < rays.count; ++k) {
-        const Vec3 normal(query.hit.Ng_x[k], query.hit.Ng_y[k], query.hit.Ng_z[k]);
-        hits[k] = scenes_->found({query.hit.geomID[k], query.hit.instID[0][k], query.hit.primID[k],
-                                  query.ray.tfar[k], query.hit.u[k], query.hit.v[k], normal,
-                                  rays.ray(k).direction});
-    }
+                        [&](RTCScene scene, RTCIntersectContext* context) { query.trace(scene, context); });
+    scenes_->found(query.hit, rays, hits);
 }
+
+void RayCaster::nearest(const RayPacket& rays, Index body, HitPacket& hits) const {
+    NearestQuery query(rays);
+    RTCIntersectContext context = make_context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+    query.trace(scenes_->bodies[body], &context);
+    scenes_->found(query.hit, rays, hits);
+    // Without an instance everything looks like furniture.
+    for (std::size_t k = 0; k < rays.count; ++k)
+        if (hits[k].body != no_index) hits[k].body = body;
+}
+
+namespace {
+
+/// Embree marks what is occluded by an end before the start.
+std::uint32_t occluded_lanes(const RTCRay16& query, Index count) {
+    std::uint32_t mask = 0;
+    for (unsigned k = 0; k < count; ++k)
+        if (query.tfar[k] < 0) mask |= 1U << k;
+    return mask;
+}
+
+}  // namespace
 
 std::uint32_t RayCaster::occluded(const RayPacket& rays, Scope scope) const {
     RTCRay16 query;
@@ -248,10 +287,16 @@ std::uint32_t RayCaster::occluded(const RayPacket& rays, Scope scope) const {
                             for (unsigned k = 0; k < 16; ++k)
                                 if (query.tfar[k] < 0) valid[k] = 0;
                         });
-    std::uint32_t mask = 0;
-    for (unsigned k = 0; k < rays.count; ++k)
-        if (query.tfar[k] < 0) mask |= 1U << k;
-    return mask;
+    return occluded_lanes(query, rays.count);
+}
+
+std::uint32_t RayCaster::occluded(const RayPacket& rays, Index body) const {
+    RTCRay16 query;
+    alignas(64) std::array<int, 16> valid;
+    to_embree(rays, query, valid);
+    RTCIntersectContext context = make_context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+    rtcOccluded16(valid.data(), scenes_->bodies[body], &context, &query);
+    return occluded_lanes(query, rays.count);
 }
 
 std::vector<Pose> poses_at(const World& world, double time_s) {

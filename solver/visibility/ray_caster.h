@@ -81,6 +81,10 @@ class RayCaster {
     /// Bit k of the result: lane k is occluded before its `far`.
     [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, Scope scope) const;
 
+    /// The same against one body alone. The rays are in the body's frame, wherever it stands.
+    void nearest(const RayPacket& rays, Index body, HitPacket& hits) const;
+    [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, Index body) const;
+
   private:
     struct Scenes;
     std::unique_ptr<Scenes> scenes_;

@@ -11,9 +11,18 @@ constexpr std::size_t blocks_per_chunk = 4;
 
 }  // namespace
 
-SightLines::SightLines(const PatchMesh& mesh, const World& world, Index lines_per_patch, std::uint64_t seed)
+Index different_moving_lines(Index lines_per_patch, const MovingLinesConfig& moving) {
+    for (Index repeats = moving.repeats; repeats > 1; --repeats)
+        if (lines_per_patch % repeats == 0 && lines_per_patch / repeats >= moving.fewest)
+            return lines_per_patch / repeats;
+    return lines_per_patch;
+}
+
+SightLines::SightLines(const PatchMesh& mesh, const World& world, Index lines_per_patch, std::uint64_t seed,
+                       const MovingLinesConfig& moving)
     : mesh_(&mesh),
       lines_per_patch_(lines_per_patch),
+      moving_lines_(different_moving_lines(lines_per_patch, moving)),
       seed_(seed),
       points_(lines_per_patch),
       lift_m_(lift_for(world)) {
@@ -33,7 +42,7 @@ std::size_t SightLines::block_of(Index patch) const {
 
 void SightLines::rays(std::size_t block, Index direction, const Pose& pose, RayPacket& out) const {
     const PatchBlock& b = blocks_[block];
-    const Sample4 sample = points_.at(direction, mixed(seed_, block));
+    const Sample4 sample = points_.at(direction % different_lines(b), mixed(seed_, block));
     const Vec3 local = cosine_direction(sample[0], sample[1]);
     out.count = b.count;
     for (Index lane = 0; lane < b.count; ++lane) {
@@ -47,20 +56,43 @@ void SightLines::rays(std::size_t block, Index direction, const Pose& pose, RayP
     }
 }
 
-Index target_of(const Hit& hit, const Ray& ray, const PatchMesh& mesh, const RayCaster& caster) {
-    if (hit.body == no_index) return sees_nothing;
-    Vec3 at = ray.origin + hit.distance * ray.direction, direction = ray.direction;
-    if (hit.body != furniture) {
-        const Pose& pose = caster.pose(hit.body);
-        const Quat back = glm::conjugate(pose.rotation);
-        at = back * (at - pose.translation);
-        direction = back * direction;
-    }
+namespace {
+
+Index target_at(const Hit& hit, const Vec3& at, const Vec3& direction, const PatchMesh& mesh) {
     if (mesh.slipped(mesh.surfaces.of_triangle[hit.body][hit.triangle], hit.side, at, direction))
         return sees_inside;
     const Index patch = mesh.patch_at(hit.body, hit.triangle, hit.side, at);
     return patch == no_index ? sees_inside : patch;
 }
+
+}  // namespace
+
+Index target_of(const Hit& hit, const Ray& ray, const PatchMesh& mesh) {
+    if (hit.body == no_index) return sees_nothing;
+    return target_at(hit, ray.origin + hit.distance * ray.direction, ray.direction, mesh);
+}
+
+Index target_of(const Hit& hit, const Ray& ray, const PatchMesh& mesh, const RayCaster& caster) {
+    if (hit.body == no_index || hit.body == furniture) return target_of(hit, ray, mesh);
+    const Pose& pose = caster.pose(hit.body);
+    const Quat back = glm::conjugate(pose.rotation);
+    const Vec3 at = ray.origin + hit.distance * ray.direction;
+    return target_at(hit, back * (at - pose.translation), back * ray.direction, mesh);
+}
+
+namespace {
+
+/// What is known of some lines goes for others, too.
+void repeat(std::size_t to, std::size_t from, Index count, const LineSinks& sinks) {
+    const auto copy = [&](auto values) {
+        std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(from), count,
+                    values.begin() + static_cast<std::ptrdiff_t>(to));
+    };
+    copy(sinks.patch);
+    if (!sinks.distance.empty()) copy(sinks.distance);
+}
+
+}  // namespace
 
 std::uint64_t trace_lines(const SightLines& lines, const PatchMesh& mesh, const RayCaster& caster,
                           Scope scope, const LineRange& range, const LineSinks& sinks,
@@ -73,10 +105,15 @@ std::uint64_t trace_lines(const SightLines& lines, const PatchMesh& mesh, const 
             std::uint64_t count = 0;
             for (std::size_t b = range.first_block + begin; b < range.first_block + end; ++b) {
                 const PatchBlock& block = lines.blocks()[b];
+                const Index different = lines.different_lines(block);
                 for (Index d = range.first_direction; d < range.last_direction; ++d) {
+                    const std::size_t first = lines.line(block, d, 0);
+                    if (d >= range.first_direction + different) {
+                        repeat(first, lines.line(block, d - different, 0), block.count, sinks);
+                        continue;
+                    }
                     lines.rays(b, d, caster.pose(block.body), rays);
                     caster.nearest(rays, scope, hits);
-                    const std::size_t first = lines.line(block, d, 0);
                     for (Index lane = 0; lane < block.count; ++lane) {
                         sinks.patch[first + lane] = target_of(hits[lane], rays.ray(lane), mesh, caster);
                         if (!sinks.distance.empty()) sinks.distance[first + lane] = hits[lane].distance;
@@ -86,34 +123,6 @@ std::uint64_t trace_lines(const SightLines& lines, const PatchMesh& mesh, const 
             }
             traced += count;
         });
-    return traced;
-}
-
-std::uint64_t trace_over_background(const SightLines& lines, const PatchMesh& mesh, const RayCaster& caster,
-                                    const LineTargets& background, const DirectionRange& range,
-                                    std::span<Index> visible, const Context& context) {
-    std::atomic<std::uint64_t> traced = 0;
-    context.for_chunks(lines.static_blocks(), blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
-        RayPacket rays;
-        HitPacket hits;
-        std::uint64_t count = 0;
-        for (std::size_t b = begin; b < end; ++b) {
-            const PatchBlock& block = lines.blocks()[b];
-            for (Index d = range.first; d < range.last; ++d) {
-                lines.rays(b, d, Pose{}, rays);
-                const std::size_t first = lines.line(block, d, 0);
-                std::copy_n(background.distance.begin() + static_cast<std::ptrdiff_t>(first), block.count,
-                            rays.far.begin());
-                caster.nearest(rays, Scope::actors, hits);
-                for (Index lane = 0; lane < block.count; ++lane)
-                    visible[first + lane] = hits[lane].body == no_index
-                                                ? background.patch[first + lane]
-                                                : target_of(hits[lane], rays.ray(lane), mesh, caster);
-                count += block.count;
-            }
-        }
-        traced += count;
-    });
     return traced;
 }
 

@@ -23,6 +23,17 @@ struct PatchBlock {
     Index body = 0;
 };
 
+/// How many of an actor's lines are lines of their own. Static patches are traced once, actors' at every
+/// frame.
+struct MovingLinesConfig {
+    Index repeats = 4;  ///< at most so many lines of a moving patch are one and the same, 1 or more
+    Index fewest = 64;  ///< no fewer lines of their own than this are left to a patch by repeating
+};
+
+/// How many of a moving patch's lines differ: as few as allowed such that every one of them is repeated
+/// equally often.
+Index different_moving_lines(Index lines_per_patch, const MovingLinesConfig& moving);
+
 /// The sight lines of all patches. Rays are never stored: line d of a patch follows from the patch's block, d
 /// and the seed. Line (block, d, lane) has the index block.first · D + d · block.count + lane, so that the
 /// lines traced together stand together. Thread-safety: const after construction.
@@ -30,7 +41,8 @@ class SightLines {
   public:
     /// `lines_per_patch` D ≥ 1. The mesh and world are read at construction and by `rays`; the mesh must
     /// outlive this.
-    SightLines(const PatchMesh& mesh, const World& world, Index lines_per_patch, std::uint64_t seed);
+    SightLines(const PatchMesh& mesh, const World& world, Index lines_per_patch, std::uint64_t seed,
+               const MovingLinesConfig& moving = {});
 
     [[nodiscard]] Index lines_per_patch() const { return lines_per_patch_; }
     [[nodiscard]] const std::vector<PatchBlock>& blocks() const { return blocks_; }
@@ -42,6 +54,11 @@ class SightLines {
         return static_cast<std::size_t>(block.first) * lines_per_patch_ +
                static_cast<std::size_t>(direction) * block.count + lane;
     }
+    /// How many lines of a block's patches differ: D of static ones. Of moving ones it may be a fraction of
+    /// it, the first of the same well-spread sequence; line d is then line d modulo this.
+    [[nodiscard]] Index different_lines(const PatchBlock& block) const {
+        return block.body == furniture ? lines_per_patch_ : moving_lines_;
+    }
     /// How far an origin is lifted off its surface so that a ray does not meet the surface it starts on.
     [[nodiscard]] float lift_m() const { return lift_m_; }
 
@@ -51,7 +68,7 @@ class SightLines {
 
   private:
     const PatchMesh* mesh_;
-    Index lines_per_patch_;
+    Index lines_per_patch_, moving_lines_;
     std::uint64_t seed_;
     SobolPoints points_;
     std::vector<PatchBlock> blocks_;
@@ -71,7 +88,9 @@ struct LineSinks {
     std::span<float> distance;
 };
 
-/// The patch, or sees_inside / sees_nothing, that a hit stands for.
+/// The patch, or sees_inside / sees_nothing, that a hit stands for; the ray is in the frame of the body hit.
+Index target_of(const Hit& hit, const Ray& ray, const PatchMesh& mesh);
+/// The same for a ray in world coordinates.
 Index target_of(const Hit& hit, const Ray& ray, const PatchMesh& mesh, const RayCaster& caster);
 
 /// Part of all lines: blocks [first_block, last_block) and directions [first_direction, last_direction).
@@ -81,7 +100,8 @@ struct LineRange {
 };
 
 /// Traces lines against the furniture and, with Scope::everything, the actors, and writes what they see.
-/// Returns the number of rays. Errors: cancelled.
+/// Lines that are one and the same are traced once where all are in the range. Returns the number of rays.
+/// Errors: cancelled.
 std::uint64_t trace_lines(const SightLines& lines, const PatchMesh& mesh, const RayCaster& caster,
                           Scope scope, const LineRange& range, const LineSinks& sinks,
                           const Context& context);
@@ -90,12 +110,5 @@ std::uint64_t trace_lines(const SightLines& lines, const PatchMesh& mesh, const 
 struct DirectionRange {
     Index first = 0, last = 0;
 };
-
-/// Lines of static receivers against the actors only, up to their static background: writes the actor patch
-/// where one is nearer, the background otherwise. Returns the number of rays. Source: Baum et al. 1986.
-/// Errors: cancelled.
-std::uint64_t trace_over_background(const SightLines& lines, const PatchMesh& mesh, const RayCaster& caster,
-                                    const LineTargets& background, const DirectionRange& range,
-                                    std::span<Index> visible, const Context& context);
 
 }  // namespace afterglow

@@ -108,6 +108,10 @@ TimeTree make_time_tree(std::span<const Path> paths, double slice_s, int most_le
     return times;
 }
 
+Box placed_box(const Box& local, const Pose& pose, float slack_m) {
+    return local.empty() ? local : grown(placed(local, pose), slack_m);
+}
+
 SpacetimeExtent swept_extent(const Box& local, const Path& path, const TimeTree& times, float slack_m) {
     if (local.empty()) return resting_extent(local);
     if (!path.moves()) return resting_extent(grown(placed(local, path.at(0)), slack_m));

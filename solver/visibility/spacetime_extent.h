@@ -38,6 +38,10 @@ struct SpacetimeExtent {
     [[nodiscard]] const Box& at(std::size_t node) const { return box.size() == 1 ? box[0] : box[node]; }
 };
 
+/// The box around `local` of a body that stands at a pose, grown by `slack_m` on every side; empty if `local`
+/// is. Thread-safety: pure.
+Box placed_box(const Box& local, const Pose& pose, float slack_m);
+
 /// The boxes swept by whatever lies in `local` of a body that moves on a path, grown by `slack_m` on every
 /// side. Conservative where the body turns: corners bulge out of the chord between two times by no more than
 /// the arc's sagitta. An empty `local` sweeps empty boxes. Thread-safety: pure.

@@ -17,8 +17,8 @@ std::uint64_t extend_static_lines(StaticLines& lines, const PatchMesh& mesh, con
     if (directions <= lines.directions) return 0;
     std::uint64_t rays = 0;
     if (lines.directions == 0)
-        rays += trace_light_lines(light, sight, mesh, caster, Scope::static_geometry,
-                                  lines.light_contribution, context);
+        rays += trace_light_lines(light, sight, caster, Scope::static_geometry, lines.light_contribution,
+                                  context);
     const LineRange range{0, sight.static_blocks(), lines.directions, directions};
     rays += trace_lines(sight, mesh, caster, Scope::static_geometry, range,
                         {lines.background.patch, lines.background.distance}, context);

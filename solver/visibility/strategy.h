@@ -57,8 +57,9 @@ class VisibilityStrategy {
     virtual ~VisibilityStrategy() = default;
     /// Whether LineScene::background must have been traced.
     [[nodiscard]] virtual bool needs_background() const = 0;
-    /// Brings a range of sight lines up to date, and the light lines with the range that starts at 0. Returns
-    /// the number of rays. Errors: cancelled.
+    /// Brings a range of sight lines up to date, and the light lines with the range that starts at 0.
+    /// `visible` must be given back as the call before left it: what stays as it was is not written again.
+    /// Returns the number of rays. Errors: cancelled.
     virtual std::uint64_t update(const LineScene& scene, const DirectionRange& range, VisibleLines& visible,
                                  const Context& context) = 0;
     /// What the updates since the last call changed on static patches' lines, where the strategy knows it
@@ -71,13 +72,14 @@ class VisibilityStrategy {
 /// Static and moving geometry traced anew: the yardstick and the oracle.
 std::unique_ptr<VisibilityStrategy> make_retrace();
 
-/// Static receivers keep their backgrounds and are traced against the actors only (Baum et al. 1986); actors'
-/// own lines are traced anew.
-std::unique_ptr<VisibilityStrategy> make_back_buffer();
+/// Static receivers keep their backgrounds; lines that meet an actor's box now are traced against it, see
+/// back_buffer.h. `clock` tells what LineScene::frame means. Source: Baum et al. 1986.
+std::unique_ptr<VisibilityStrategy> make_back_buffer(const World& world, const FrameClock& clock);
 
 /// Static lines keep their backgrounds; groups of patches keep a temporal graph of the actors between them
-/// and follow it front to back, see temporal_graph_strategy.h; actors' own lines are traced anew. `clock`
-/// tells what LineScene::frame means. Source: Tost and Pueyo 1993, section 3.
+/// and follow it front to back, see temporal_graph_strategy.h. Where nothing ever moves there is nothing to
+/// follow: then it is `back-buffer`. `clock` tells what LineScene::frame means. Source: Tost and Pueyo 1993,
+/// section 3.
 std::unique_ptr<VisibilityStrategy> make_temporal_graph(const World& world, const FrameClock& clock);
 
 }  // namespace afterglow

@@ -25,52 +25,6 @@ class SharedWork {
     TemporalGraphWork& sum_;
 };
 
-/// Where a body's box is now.
-Box placed_box(const Box& local, const Pose& pose, float slack_m) {
-    Box box;
-    if (local.empty()) return box;
-    for (int corner = 0; corner < 8; ++corner)
-        box.add(pose.point(Vec3((corner & 1) != 0 ? local.high.x : local.low.x,
-                                (corner & 2) != 0 ? local.high.y : local.low.y,
-                                (corner & 4) != 0 ? local.high.z : local.low.z)));
-    return {box.low - Vec3(slack_m), box.high + Vec3(slack_m)};
-}
-
-/// Calls `body(direction, encounters)` for every packet of which some encounter is due.
-template <class Body>
-void for_packets(std::span<const Encounter> encounters, const DirectionRange& range, std::size_t slice,
-                 std::vector<Encounter>& due, const Body& body) {
-    auto at = std::partition_point(encounters.begin(), encounters.end(),
-                                   [&](const Encounter& e) { return e.direction < range.first; });
-    while (at != encounters.end() && at->direction < range.last) {
-        const Index direction = at->direction;
-        due.clear();
-        for (; at != encounters.end() && at->direction == direction; ++at)
-            if (at->during(slice)) due.push_back(*at);
-        if (!due.empty()) body(direction, std::span<const Encounter>(due));
-    }
-}
-
-/// One packet of lines to a lamp or from a receiver that moves: it has no background and is traced anew.
-/// Returns the number of rays.
-std::uint64_t trace_lamp(const LineScene& scene, std::size_t block, Index k, float* visible) {
-    RayPacket rays;
-    std::array<float, 16> contribution;
-    scene.light.rays(block, k, scene.caster, rays, contribution);
-    std::uint64_t alive = 0;
-    for (std::size_t lane = 0; lane < rays.count; ++lane) {
-        // A ray that ends where it starts is not traced.
-        if (contribution[lane] > 0)
-            ++alive;
-        else
-            rays.far[lane] = 0;
-    }
-    const std::uint32_t blocked = alive == 0 ? 0 : scene.caster.occluded(rays, Scope::everything);
-    for (std::size_t lane = 0; lane < rays.count; ++lane)
-        visible[lane] = ((blocked >> lane) & 1U) != 0 ? 0.0F : contribution[lane];
-    return alive;
-}
-
 }  // namespace
 
 /// What all blocks of an update share.
@@ -87,8 +41,9 @@ TemporalGraphStrategy::TemporalGraphStrategy(const World& world, const FrameCloc
                                              const TemporalGraphConfig& config)
     : clock_(clock),
       config_(config),
-      stage_(
-          make_actor_stage(world, config.frames_per_slice / clock.frames_per_second, 2 * lift_for(world))) {}
+      stage_(make_actor_stage(world, config.frames_per_slice / clock.frames_per_second, 2 * lift_for(world))),
+      own_(world),
+      own_light_(world) {}
 
 void TemporalGraphStrategy::learn(const LineScene& scene, const DirectionRange& range,
                                   const Context& context) {
@@ -100,20 +55,13 @@ void TemporalGraphStrategy::learn(const LineScene& scene, const DirectionRange& 
             first_group_.push_back(g);
         }
     }
-    const DirectionRange unknown{directions_, std::max(directions_, range.last)};
     const bool lamps_wanted = !lamps_known_ && range.first == 0;
-    if (unknown.first == unknown.last && !lamps_wanted) return;
-    context.for_chunks(encounters_.size(), blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) {
-            find_encounters(scene.sight, b, scene.background.background, unknown, stage_.extents,
-                            stage_.times, encounters_[b].sight);
-            if (lamps_wanted)
-                find_light_encounters(scene.light, scene.sight, scene.mesh, b, scene.caster,
-                                      scene.background.light_contribution, stage_.extents, stage_.times,
-                                      encounters_[b].light);
-        }
-    });
-    directions_ = unknown.last;
+    if (range.last <= directions_ && !lamps_wanted) return;
+    const EncounterScene encounters{scene.mesh,       scene.sight,    scene.light, scene.caster,
+                                    scene.background, stage_.extents, stage_.times};
+    extend_encounters(encounters, {directions_, range.last}, encounters_, context);
+    if (lamps_wanted) find_light_encounters(encounters, encounters_, context);
+    directions_ = std::max(directions_, range.last);
     lamps_known_ = lamps_known_ || lamps_wanted;
     rebuild_groups(context);
 }
@@ -166,9 +114,8 @@ void TemporalGraphStrategy::look(const Frame& frame, std::size_t block, Temporal
               frame.visible.patch.begin() + static_cast<std::ptrdiff_t>(from));
     LinePacket lines;
     LaneHits hits;
-    std::vector<Encounter> due;
-    for_packets(
-        encounters_[block].sight, frame.range, frame.slice, due,
+    for_due_packets(
+        encounters_[block].sight, frame.range, frame.slice,
         [&](Index direction, std::span<const Encounter> actors) {
             const std::size_t first = scene.sight.line(b, direction, 0);
             scene.sight.rays(block, direction, Pose{}, lines.rays);
@@ -193,30 +140,26 @@ void TemporalGraphStrategy::look_at_lamps(const Frame& frame, std::size_t block,
     std::vector<float>& visible = frame.visible.light_contribution;
     for (Index k = 0; k < scene.light.lines_per_patch(); ++k) {
         const std::size_t first = scene.light.line(b, k, 0);
-        if (block >= encounters_.size() || scene.mesh.body[scene.light.lamp_patch(block, k)] != furniture)
-            work.lines_searched += trace_lamp(scene, block, k, &visible[first]);
-        else
+        if (scene.mesh.body[scene.light.lamp_patch(block, k)] == furniture)
             std::copy_n(scene.background.light_contribution.begin() + static_cast<std::ptrdiff_t>(first),
                         b.count, visible.begin() + static_cast<std::ptrdiff_t>(first));
     }
-    if (block >= encounters_.size()) return;
     LinePacket lines;
     LaneHits hits;
     std::array<float, 16> unused;
-    std::vector<Encounter> due;
-    for_packets(encounters_[block].light, {0, scene.light.lines_per_patch()}, frame.slice, due,
-                [&](Index k, std::span<const Encounter> actors) {
-                    const std::size_t first = scene.light.line(b, k, 0);
-                    scene.light.rays(block, k, scene.caster, lines.rays, unused);
-                    lines.prepare();
-                    hits.start(lines.rays);
-                    std::uint32_t lit = 0;
-                    for (Index lane = 0; lane < b.count; ++lane)
-                        if (visible[first + lane] > 0) lit |= 1U << lane;
-                    std::uint32_t found = follow_packet(frame, block, lines, actors, lit, hits, work);
-                    for (; found != 0; found &= found - 1)
-                        visible[first + static_cast<std::size_t>(std::countr_zero(found))] = 0;
-                });
+    for_due_packets(encounters_[block].light, {0, scene.light.lines_per_patch()}, frame.slice,
+                    [&](Index k, std::span<const Encounter> actors) {
+                        const std::size_t first = scene.light.line(b, k, 0);
+                        scene.light.rays(block, k, scene.caster, lines.rays, unused);
+                        lines.prepare();
+                        hits.start(lines.rays);
+                        std::uint32_t lit = 0;
+                        for (Index lane = 0; lane < b.count; ++lane)
+                            if (visible[first + lane] > 0) lit |= 1U << lane;
+                        std::uint32_t found = follow_packet(frame, block, lines, actors, lit, hits, work);
+                        for (; found != 0; found &= found - 1)
+                            visible[first + static_cast<std::size_t>(std::countr_zero(found))] = 0;
+                    });
 }
 
 std::uint64_t TemporalGraphStrategy::update(const LineScene& scene, const DirectionRange& range,
@@ -233,19 +176,18 @@ std::uint64_t TemporalGraphStrategy::update(const LineScene& scene, const Direct
             placed_box(stage_.bodies[actor].box, frame.poses.back(), scene.sight.lift_m()));
     }
     SharedWork shared(work_);
-    const std::size_t blocks = scene.sight.blocks().size();
-    context.for_chunks(blocks, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
+    context.for_chunks(encounters_.size(), blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
         TemporalGraphWork work;
         for (std::size_t b = begin; b < end; ++b) {
-            if (b < encounters_.size()) look(frame, b, work);
+            look(frame, b, work);
             if (range.first == 0) look_at_lamps(frame, b, work);
         }
         shared.add(work);
     });
 
-    const LineRange of_actors{encounters_.size(), blocks, range.first, range.last};
-    return work_.lines_searched + trace_lines(scene.sight, scene.mesh, scene.caster, Scope::everything,
-                                              of_actors, {visible.patch, {}}, context);
+    std::uint64_t own = own_.update(scene, range, visible, context);
+    if (range.first == 0) own += own_light_.update(scene, visible, context);
+    return work_.lines_searched + own;
 }
 
 std::uint64_t TemporalGraphStrategy::lines_kept(const SightLines& sight) const {
@@ -266,6 +208,7 @@ std::size_t TemporalGraphStrategy::graphs() const {
 }
 
 std::unique_ptr<VisibilityStrategy> make_temporal_graph(const World& world, const FrameClock& clock) {
+    if (!anything_moves(world)) return make_back_buffer(world, clock);
     return std::make_unique<TemporalGraphStrategy>(world, clock);
 }
 

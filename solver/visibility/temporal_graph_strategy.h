@@ -1,6 +1,8 @@
 #pragma once
 
 #include "solver/visibility/group_sight.h"
+#include "solver/visibility/own_light_lines.h"
+#include "solver/visibility/own_lines.h"
 #include "solver/visibility/strategy.h"
 
 namespace afterglow {
@@ -15,7 +17,7 @@ struct TemporalGraphConfig {
 
 /// The report's own visibility. Static lines keep their backgrounds. Those that no actor's spacetime extent
 /// ever cuts are definitely valid and dropped; the others are followed front to back through their group's
-/// temporal graph, whose last node is the background. Actors' own lines are traced anew.
+/// temporal graph, whose last node is the background.
 /// The same lines, mesh and world must be given to every update. Source: Tost and Pueyo 1993, section 3.
 class TemporalGraphStrategy final : public VisibilityStrategy {
   public:
@@ -55,6 +57,8 @@ class TemporalGraphStrategy final : public VisibilityStrategy {
     std::vector<std::size_t> first_group_;  // by static block, and one more
     std::vector<GroupSight> sights_;        // by group
     TemporalGraphWork work_;
+    OwnLines own_;
+    OwnLightLines own_light_;
 };
 
 }  // namespace afterglow

@@ -58,7 +58,7 @@ void retrace(benchmark::State& state) {
     run_frames(state, *make_retrace());
 }
 void back_buffer(benchmark::State& state) {
-    run_frames(state, *make_back_buffer());
+    run_frames(state, *make_back_buffer(room().world, room().clock));
 }
 
 /// What every strategy but `retrace` spends on the actors' own lines.

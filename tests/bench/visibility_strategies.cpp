@@ -12,6 +12,8 @@
 #include "solver/scene/load.h"
 #include "solver/visibility/events.h"
 #include "solver/visibility/line_events.h"
+#include "solver/visibility/own_light_lines.h"
+#include "solver/visibility/own_lines.h"
 #include "solver/visibility/reach.h"
 
 namespace afterglow {
@@ -70,11 +72,11 @@ struct Row {
 /// Sight lines of static patches only, which is where the strategies differ.
 void compare_static_lines(Room& room, const FrameClock& clock, int frames, const Context& context) {
     const Index lines = room.sight.lines_per_patch();
-    Row retrace{"retrace"}, back_buffer{"back-buffer"}, events{"events"};
+    Row retrace{"retrace"}, events{"events"};
     const double static_ms = ms_of([&] {
         extend_static_lines(room.background, room.mesh, room.sight, room.light, room.caster, lines, context);
     });
-    std::vector<Index> anew(std::size_t{room.mesh.size()} * lines), over(anew), shown(anew), before;
+    std::vector<Index> anew(std::size_t{room.mesh.size()} * lines), shown(anew), before;
     const ActorTrees trees = make_actor_trees(room.world);
     std::uint64_t changes = 0, k = 0, events_applied = 0, different = 0, lines_that_change = 0;
     std::vector<char> cut(room.static_lines(), 0);
@@ -111,10 +113,6 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
             continue;
         }
         retrace.frame_ms.push_back(retrace_ms);
-        back_buffer.frame_ms.push_back(ms_of([&] {
-            trace_over_background(room.sight, room.mesh, room.caster, room.background.background, {0, lines},
-                                  over, context);
-        }));
         for (std::size_t line = 0; line < room.static_lines(); ++line) {
             changes += anew[line] != before[line] ? 1U : 0U;
             different += anew[line] != shown[line] ? 1U : 0U;
@@ -133,7 +131,7 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
         retrace.frame_ms.size(), static_cast<unsigned long long>(changes), static_cast<unsigned long long>(k),
         static_cast<unsigned long long>(different));
     std::printf("%-14s %12s %12s %10s %14s\n", "strategy", "ahead, ms", "frame, ms", "ratio", "whole, ratio");
-    for (const Row* row : {&retrace, &back_buffer, &events}) {
+    for (const Row* row : {&retrace, &events}) {
         const double frame_ms = median(row->frame_ms);
         const double fixed = row == &retrace ? 0 : static_ms + row->ahead_ms;
         std::printf("%-14s %12.1f %12.3f %10.1f %14.1f\n", row->name, row->ahead_ms, frame_ms,
@@ -159,6 +157,57 @@ void time_light_lines(const Room& room, const FrameClock& clock, int frames, con
                 static_cast<double>(events) * 1e-6);
 }
 
+/// Actors' own lines, of which some or all differ, and their light lines: all anew, or as OwnLines and
+/// OwnLightLines do it. Medians over sampled frames and exact counts of rays.
+void compare_own_lines(Room& room, const FrameClock& clock, int frames, const Context& context) {
+    std::printf("\nactors' own lines        rays a frame, anew  frame, ms  kept, rays  frame, ms  ratio\n");
+    const auto print = [](const char* name, double anew_rays, const std::vector<double>& anew_ms,
+                          double kept_rays, const std::vector<double>& kept_ms) {
+        std::printf("%-24s %18.0f %10.2f %11.0f %10.2f %6.1f\n", name, anew_rays, median(anew_ms), kept_rays,
+                    median(kept_ms), median(anew_ms) / median(kept_ms));
+    };
+    VisibleLines seen = make_visible_lines(room.mesh, room.sight, room.light);
+    const Index lines = room.sight.lines_per_patch();
+    std::vector<int> sampled;
+    for (int f = 0; f < frames; f += std::max(1, frames / 24)) sampled.push_back(f);
+    const double shots = static_cast<double>(sampled.size());
+    for (const Index repeats : {1U, 2U, 4U, 8U}) {
+        const SightLines sight(room.mesh, room.world, lines, 1, {repeats, 1});
+        OwnLines own(room.world);
+        std::vector<double> anew_ms, kept_ms;
+        double anew_rays = 0, kept_rays = 0;
+        for (const int f : sampled) {
+            room.caster.set_poses(poses_at(room.world, clock.time_of(f)));
+            const LineScene scene{room.mesh, sight, room.light, room.caster, room.background, f};
+            anew_ms.push_back(ms_of([&] {
+                anew_rays += static_cast<double>(trace_lines(
+                    sight, room.mesh, room.caster, Scope::everything,
+                    {sight.static_blocks(), sight.blocks().size(), 0, lines}, {seen.patch, {}}, context));
+            }));
+            kept_ms.push_back(ms_of([&] {
+                const auto rays = own.update(scene, {0, lines}, seen, context);
+                kept_rays += f == sampled.front() ? 0.0 : static_cast<double>(rays);
+            }));
+        }
+        print(("1 line in " + std::to_string(repeats)).c_str(), anew_rays / shots, anew_ms,
+              kept_rays / (shots - 1), kept_ms);
+    }
+    // Their own light lines, of which one in so many differs.
+    for (const Index repeats : {1U, 2U, 4U}) {
+        const LightLines light(room.mesh, room.sight, room.lamps, room.light.lines_per_patch(), 2,
+                               {repeats, 1});
+        OwnLightLines own(room.world);
+        std::vector<double> kept_ms;
+        double rays = 0;
+        for (const int f : sampled) {
+            room.caster.set_poses(poses_at(room.world, clock.time_of(f)));
+            const LineScene scene{room.mesh, room.sight, light, room.caster, room.background, f};
+            kept_ms.push_back(ms_of([&] { rays += static_cast<double>(own.update(scene, seen, context)); }));
+        }
+        std::printf("light lines, 1 in %u %47.0f %10.2f\n", repeats, rays / shots, median(kept_ms));
+    }
+}
+
 /// Everything a frame looks along: actors' own lines and light lines, too.
 void compare_whole_frames(Room& room, const FrameClock& clock, int frames, const Context& context) {
     struct Asked {
@@ -167,7 +216,7 @@ void compare_whole_frames(Room& room, const FrameClock& clock, int frames, const
         bool every_frame;
     };
     Asked asked[] = {{"retrace", make_retrace(), false},
-                     {"back-buffer", make_back_buffer(), false},
+                     {"back-buffer", make_back_buffer(room.world, clock), false},
                      {"temporal-graph", make_temporal_graph(room.world, clock), true},
                      {"events, 128", make_events(room.world, clock, {window, window}), true},
                      {"events", make_events(room.world, clock), true}};
@@ -211,5 +260,6 @@ int main(int count, char** arguments) {
                 room.sight.lines_per_patch(), context.threads());
     compare_static_lines(room, clock, frames, context);
     time_light_lines(room, clock, frames, context);
+    compare_own_lines(room, clock, frames, context);
     compare_whole_frames(room, clock, frames, context);
 }

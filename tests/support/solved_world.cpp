@@ -26,7 +26,7 @@ std::unique_ptr<VisibilityStrategy> make_strategy(Visibility visibility, const W
         case Visibility::retrace:
             return make_retrace();
         case Visibility::back_buffer:
-            return make_back_buffer();
+            return make_back_buffer(world, fine_clock);
         case Visibility::temporal_graph:
             return make_temporal_graph(world, fine_clock);
         case Visibility::events:

@@ -14,7 +14,7 @@ using testing::LinedWorld;
 /// Mean over patches of the form factor to the lamp above that light lines give.
 double mean_factor(const LinedWorld& lined, Scope scope) {
     std::vector<float> contribution(std::size_t{lined.mesh.size()} * lined.light.lines_per_patch(), 0);
-    trace_light_lines(lined.light, lined.sight, lined.mesh, lined.caster, scope, contribution, Context(2));
+    trace_light_lines(lined.light, lined.sight, lined.caster, scope, contribution, Context(2));
     double sum = 0, area = 0;
     for (const PatchBlock& block : lined.sight.blocks()) {
         for (Index lane = 0; lane < block.count; ++lane) {
@@ -59,8 +59,7 @@ TEST(LightLines, AnActorCastsItsShadow) {
     testing::add_actor(world, "lid", Vec3(2, 0.01F, 2), 0, rest);
     const LinedWorld lined(std::move(world), 0.5F, 16, 64);
     std::vector<float> contribution(std::size_t{lined.mesh.size()} * 64, 0);
-    trace_light_lines(lined.light, lined.sight, lined.mesh, lined.caster, Scope::everything, contribution,
-                      Context(1));
+    trace_light_lines(lined.light, lined.sight, lined.caster, Scope::everything, contribution, Context(1));
     const PatchBlock& first = lined.sight.blocks().front();
     ASSERT_EQ(lined.mesh.surface[first.first], 0U);
     for (Index k = 0; k < 64; ++k) EXPECT_EQ(contribution[lined.light.line(first, k, 0)], 0);
