@@ -79,12 +79,14 @@ class TileUpdater {
 
     void update_first(Index tile, KeptTile& kept) {
         if (kept.first.empty()) kept.first.resize(KeptTile::pixels * few_);
-        for (std::size_t k = 0; k < few_; ++k)
-            for_pixels(tile, [&](std::size_t pixel, int x, int y) {
+        for_pixels(tile, [&](std::size_t pixel, int x, int y) {
+            for (std::size_t k = 0; k < few_; ++k) {
                 KeptSample& sample = kept.first[pixel * few_ + k];
-                if (changes_.touch(tile, kept, sample, changed_shadows_)) add_task(sample, pixel, x, y, k);
-            });
-        run_tasks(kept);
+                if (changes_.touch(tile, kept, sample, changed_shadows_))
+                    look_again(tile, kept, pixel, {&sample, x, y, k});
+            }
+        });
+        finish(kept);
     }
 
     /// The further samples of pixels whose first ones ask for them.
@@ -106,20 +108,25 @@ class TileUpdater {
             for (std::size_t k = 0; k < more_; ++k) {
                 KeptSample& sample = kept.further[kept.first_further[pixel] + k];
                 if (outdated[pixel] || changes_.touch(tile, kept, sample, changed_shadows_))
-                    add_task(sample, pixel, x, y, few_ + k);
+                    look_again(tile, kept, pixel, {&sample, x, y, few_ + k});
             }
         });
-        run_tasks(kept);
+        finish(kept);
     }
 
-    void add_task(KeptSample& sample, std::size_t pixel, int x, int y, std::size_t k) {
+    void look_again(Index tile, const KeptTile& kept, std::size_t pixel, const SampleTask& task) {
         changed_[pixel] = true;
-        tasks_.push_back({&sample, x, y, k});
+        ++samples;
+        const bool sees_furniture = !actors_.may_cover && changes_.changed_cover[tile] == 0;
+        if (sees_furniture && task.sample->known == KeptSample::Known::light)
+            samples_.relight(kept, actors_, task);
+        else
+            tasks_.push_back(task);
     }
 
-    void run_tasks(KeptTile& kept) {
+    void finish(KeptTile& kept) {
         samples_.update(kept, actors_, tasks_);
-        samples += tasks_.size();
+        samples_.finish();
         tasks_.clear();
     }
 

@@ -15,6 +15,7 @@ Index surface_of(const LitWorld& lit, const KeptSample& sample) {
 }
 
 Rgb emitted_by(const LitWorld& lit, const KeptSample& sample) {
+    if (!sample.emits) return Rgb(0);
     if (sample.triangle == no_index) return lit.world->background;
     const Index material = lit.world->bodies[furniture].triangles[sample.triangle].material;
     return emitted_by(lit.materials[material], sample.side);
@@ -62,6 +63,9 @@ SampleUpdater::SampleUpdater(const CameraView& view, const LitWorld& lit, const 
 void SampleUpdater::update(KeptTile& tile, const TileActors& actors, std::span<const SampleTask> tasks) {
     for (std::size_t begin = 0; begin < tasks.size(); begin += lanes)
         meet(tile, actors, tasks.subspan(begin, std::min(lanes, tasks.size() - begin)));
+}
+
+void SampleUpdater::finish() {
     for (Queue* queue : {&on_furniture_, &on_actors_, &remembered_}) flush(*queue);
 }
 
@@ -138,6 +142,7 @@ void SampleUpdater::look_at_furniture(KeptTile& tile, const TileActors& actors, 
     KeptSample& sample = *task.sample;
     const SeenPoint seen = look_at(lit_, ray, sample.hit());
     sample.known = KeptSample::Known::light;
+    sample.emits = seen.emitted != Rgb(0);
     sample.reflectance = seen.reflectance;
     sample.surface = seen.surface;
     sample.first_weight = static_cast<std::uint32_t>(tile.weights.size());
@@ -157,8 +162,12 @@ void SampleUpdater::look_at_furniture(KeptTile& tile, const TileActors& actors, 
 
 /// A sample that sees the furniture again, or still.
 void SampleUpdater::recall(const KeptTile& tile, const TileActors& actors, const SampleTask& task) {
+    task.sample->surface = surface_of(lit_, *task.sample);
+    relight(tile, actors, task);
+}
+
+void SampleUpdater::relight(const KeptTile& tile, const TileActors& actors, const SampleTask& task) {
     KeptSample& sample = *task.sample;
-    sample.surface = surface_of(lit_, sample);
     const Rgb emitted = emitted_by(lit_, sample);
     if (max_channel(sample.reflectance) <= 0) {
         sample.radiance = emitted;

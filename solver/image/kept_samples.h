@@ -44,6 +44,7 @@ struct KeptSample {
     std::uint8_t weights = 0;
     Side side = Side::front;
     Known known = Known::nothing;
+    bool emits = false;  ///< of itself, by its material
 
     [[nodiscard]] Hit hit() const {
         return {triangle == no_index ? no_index : furniture, triangle, side, distance, u, v};
@@ -89,8 +90,12 @@ class SampleUpdater {
     SampleUpdater(const CameraView& view, const LitWorld& lit, const PictureConfig& config,
                   const SobolPoints& camera_points, const ShadowLines& lines);
 
-    /// All tasks are of the tile.
+    /// What the samples see now, whatever it was. Some are done only by `finish`.
     void update(KeptTile& tile, const TileActors& actors, std::span<const SampleTask> tasks);
+    /// Likewise, for a sample that knows its light and sees the furniture, before as now.
+    void relight(const KeptTile& tile, const TileActors& actors, const SampleTask& task);
+    /// To be called before what has been updated is read.
+    void finish();
     [[nodiscard]] std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
