@@ -74,10 +74,12 @@ float DirectLight::bound(const Emitter& emitter, const Vec3& point, const Vec3& 
     return max_channel(emitter.emission) * emitter.area_m2 * cosine / squared;
 }
 
-DirectLight::Place DirectLight::place_on(const Emitter& emitter, const Vec3& from, float choice, float s,
-                                         float t) const {
+DirectLight::Place DirectLight::place_on(Index number, Seen& seen, float choice, float s, float t) const {
+    const Emitter& emitter = emitters_[number];
     if (emitter.rectangle) {
-        const RectanglePoint point = point_seen(*emitter.rectangle, from, s, t);
+        auto& view = seen.rectangle[number];
+        if (!view) view.emplace(*emitter.rectangle, seen.point);
+        const RectanglePoint point = view->at(s, t);
         return {point.position, point.solid_angle};
     }
     const auto& shares = emitter.cumulative_share;
@@ -85,37 +87,78 @@ DirectLight::Place DirectLight::place_on(const Emitter& emitter, const Vec3& fro
         static_cast<std::size_t>(std::upper_bound(shares.begin(), shares.end() - 1, choice) - shares.begin());
     const PatchPoint on = mesh_->point_on(emitter.patches[k], s, t);
     const Vec3 position = emitter.pose.point(on.position);
-    const Vec3 back = from - position;
+    const Vec3 back = seen.point - position;
     const float squared = glm::dot(back, back);
     if (!(squared > 0)) return {position, 0};
     const float facing = glm::dot(emitter.pose.direction(on.normal), back);
     return {position, emitter.area_m2 * std::max(0.0F, facing) / (squared * std::sqrt(squared))};
 }
 
-LightSample DirectLight::sample(const Vec3& point, const Vec3& normal, float choice, float s, float t) const {
-    float sum = 0;
-    for (const Emitter& emitter : emitters_) sum += bound(emitter, point, normal);
-    if (!(sum > 0)) return {};
-    float left = choice * sum;
-    const Emitter* chosen = nullptr;
-    float weight = 0;
+void DirectLight::look_from(const Vec3& point, const Vec3& normal, Seen& seen) const {
+    seen.point = point;
+    seen.normal = normal;
+    seen.bound.clear();
+    seen.rectangle.assign(emitters_.size(), std::nullopt);
+    seen.sum = 0;
     for (const Emitter& emitter : emitters_) {
-        const float w = bound(emitter, point, normal);
+        seen.bound.push_back(bound(emitter, point, normal));
+        seen.sum += seen.bound.back();
+    }
+}
+
+LightSample DirectLight::sample(Seen& seen, float choice, float s, float t) const {
+    if (!(seen.sum > 0)) return {};
+    float left = choice * seen.sum;
+    Index chosen = no_index;
+    float weight = 0;
+    for (Index e = 0; e < emitters_.size(); ++e) {
+        const float w = seen.bound[e];
         if (w <= 0) continue;
-        chosen = &emitter;
+        chosen = e;
         weight = w;
         if (left < w) break;
         left -= w;
     }
     // What is left of `choice` within the chosen lamp is uniform again.
-    const Place place = place_on(*chosen, point, std::min(left / weight, 1.0F), s, t);
-    const Vec3 across = place.position - point;
+    const Place place = place_on(chosen, seen, std::min(left / weight, 1.0F), s, t);
+    const Vec3 across = place.position - seen.point;
     LightSample out;
     out.distance_m = glm::length(across);
     if (!(out.distance_m > 0)) return {};
     out.direction = across / out.distance_m;
-    const float cosine = std::max(0.0F, glm::dot(out.direction, normal));
-    out.irradiance = chosen->emission * (cosine * place.solid_angle * sum / (pi * weight));
+    const float cosine = std::max(0.0F, glm::dot(out.direction, seen.normal));
+    out.irradiance = emitters_[chosen].emission * (cosine * place.solid_angle * seen.sum / (pi * weight));
+    return out;
+}
+
+LightSample DirectLight::sample(const Vec3& point, const Vec3& normal, float choice, float s, float t) const {
+    Seen seen;
+    look_from(point, normal, seen);
+    return sample(seen, choice, s, t);
+}
+
+bool DirectLight::shines_like(const DirectLight& other) const {
+    const auto same = [](const Emitter& a, const Emitter& b) {
+        return a.emission == b.emission && a.pose == b.pose && a.centre == b.centre;
+    };
+    return std::equal(emitters_.begin(), emitters_.end(), other.emitters_.begin(), other.emitters_.end(),
+                      same);
+}
+
+std::vector<Box> DirectLight::boxes() const {
+    std::vector<Box> out;
+    for (const Emitter& emitter : emitters_) {
+        Box box;
+        if (const auto& r = emitter.rectangle) {
+            for (const Vec3& corner :
+                 {r->corner, r->corner + r->edge_u, r->corner + r->edge_v, r->corner + r->edge_u + r->edge_v})
+                box.add(corner);
+        } else {
+            box.add(emitter.centre - Vec3(emitter.radius_m));
+            box.add(emitter.centre + Vec3(emitter.radius_m));
+        }
+        out.push_back(box);
+    }
     return out;
 }
 

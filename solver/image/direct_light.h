@@ -38,6 +38,23 @@ class DirectLight {
     [[nodiscard]] LightSample sample(const Vec3& point, const Vec3& normal, float choice, float s,
                                      float t) const;
 
+    /// The lamps as one point sees them: what all samples from there share. One thread at a time; to be used
+    /// again for other points.
+    struct Seen {
+        Vec3 point{0}, normal{0};
+        float sum = 0;                                        ///< of `bound`; 0: no lamp gives anything here
+        std::vector<float> bound;                             ///< by emitter
+        std::vector<std::optional<RectangleView>> rectangle;  ///< by emitter, made when first needed
+    };
+    void look_from(const Vec3& point, const Vec3& normal, Seen& seen) const;
+    /// As above, from the point that was last looked from.
+    [[nodiscard]] LightSample sample(Seen& seen, float choice, float s, float t) const;
+
+    /// Whether the other's lamps stand where these do and shine alike; of the same lamps of the same mesh.
+    [[nodiscard]] bool shines_like(const DirectLight& other) const;
+    /// A box around each lamp that is on, world coordinates.
+    [[nodiscard]] std::vector<Box> boxes() const;
+
   private:
     struct Emitter {
         Vec3 centre{0};
@@ -56,8 +73,7 @@ class DirectLight {
         Vec3 position;
         float solid_angle;
     };
-    [[nodiscard]] Place place_on(const Emitter& emitter, const Vec3& from, float choice, float s,
-                                 float t) const;
+    [[nodiscard]] Place place_on(Index emitter, Seen& seen, float choice, float s, float t) const;
 
     const PatchMesh* mesh_;
     std::vector<Emitter> emitters_;

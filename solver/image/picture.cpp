@@ -7,79 +7,15 @@
 #include <vector>
 
 #include "solver/base/sampling.h"
-#include "solver/image/surface_light.h"
+#include "solver/image/pixel_tally.h"
+#include "solver/image/seen_point.h"
+#include "solver/image/shadow_lines.h"
 
 namespace afterglow {
 
 namespace {
 
 constexpr std::size_t lanes = 16;
-
-/// What a camera ray meets, as far as light is concerned.
-struct SeenPoint {
-    Rgb radiance{0};           ///< without the light that is taken point by point
-    Rgb reflectance{0};        ///< 0: no light need be taken
-    Vec3 position{0};          ///< lifted off the surface, world
-    Vec3 normal{0};            ///< unit, on the side that is seen
-    Index surface = no_index;  ///< twice its number, and its side; nothing: no_index
-};
-
-SeenPoint look_at(const LitWorld& lit, const Ray& ray, const Hit& hit) {
-    SeenPoint seen;
-    if (hit.body == no_index) {
-        seen.radiance = lit.world->background;
-        return seen;
-    }
-    const Material& material = lit.materials[lit.world->bodies[hit.body].triangles[hit.triangle].material];
-    const Index surface = lit.mesh->surfaces.of_triangle[hit.body][hit.triangle];
-    seen.surface = 2 * surface + static_cast<Index>(hit.side);
-    seen.radiance = emitted_by(material, hit.side);
-    seen.reflectance = reflectance_at(*lit.world, material, hit);
-    if (max_channel(seen.reflectance) <= 0) return seen;
-
-    const Pose& pose = lit.caster->pose(hit.body);
-    const Vec3 at = ray.origin + hit.distance * ray.direction;
-    const Vec3 in_body = hit.body == furniture ? at : glm::conjugate(pose.rotation) * (at - pose.translation);
-    const Vec3 in_direction =
-        hit.body == furniture ? ray.direction : glm::conjugate(pose.rotation) * ray.direction;
-    const bool slipped = lit.mesh->slipped(surface, hit.side, in_body, in_direction);
-    if (!slipped) seen.radiance += seen.reflectance / pi * interpolated_irradiance(lit, ray, hit);
-
-    const float sign = hit.side == Side::front ? 1.0F : -1.0F;
-    seen.normal = pose.direction(sign * lit.normals->at(hit.body, hit.triangle, hit.u, hit.v));
-    // Where the ray slipped past something, the light is that of the side it came from.
-    seen.position = slipped ? pose.point(lit.mesh->just_before(surface, in_body, in_direction))
-                            : at + lit.lift_m * normal_at(*lit.world, *lit.caster, hit);
-    return seen;
-}
-
-float luminance(const Rgb& c) {
-    return 0.2126F * c.r + 0.7152F * c.g + 0.0722F * c.b;
-}
-
-/// What the samples of a pixel have given so far.
-struct Tally {
-    Rgb sum{0};
-    float squares = 0;  ///< of luminance
-    int count = 0;
-    Index surface = no_index;
-    bool sees_several = false;
-
-    void add(const SeenPoint& seen) {
-        sum += seen.radiance;
-        squares += luminance(seen.radiance) * luminance(seen.radiance);
-        if (count > 0 && seen.surface != surface) sees_several = true;
-        surface = seen.surface;
-        ++count;
-    }
-    [[nodiscard]] bool is_noisy(float noise) const {
-        if (sees_several) return true;
-        const auto n = static_cast<float>(count);
-        const float mean = luminance(sum) / n;
-        const float variance = std::max(0.0F, squares / n - mean * mean) / std::max(1.0F, n - 1);
-        return variance > noise * noise * mean * mean;
-    }
-};
 
 /// Which sample of which pixel a lane takes.
 struct LaneSample {
@@ -91,11 +27,11 @@ struct LaneSample {
 class PacketRenderer {
   public:
     PacketRenderer(const CameraView& view, const LitWorld& lit, const PictureConfig& config,
-                   const SobolPoints& camera_points, const SobolPoints& light_points)
-        : view_(view), lit_(lit), config_(config), camera_(camera_points), light_(light_points) {}
+                   const SobolPoints& camera_points, const ShadowLines& lines)
+        : view_(view), lit_(lit), config_(config), camera_(camera_points), lines_(lines) {}
 
     /// The first samples of a row's pixels.
-    void begin_row(int y, std::span<Tally> row) {
+    void begin_row(int y, std::span<PixelTally> row) {
         for (int x0 = 0; x0 < view_.width; x0 += static_cast<int>(lanes)) {
             count_ = static_cast<std::size_t>(std::min(static_cast<int>(lanes), view_.width - x0));
             for (std::size_t k = 0; k < static_cast<std::size_t>(config_.samples_per_pixel); ++k) {
@@ -103,22 +39,22 @@ class PacketRenderer {
                     lane_[lane] = {x0 + static_cast<int>(lane), y, k};
                 take_samples();
                 for (std::size_t lane = 0; lane < count_; ++lane)
-                    row[static_cast<std::size_t>(lane_[lane].x)].add(seen_[lane]);
+                    add_to(row[static_cast<std::size_t>(lane_[lane].x)], lane);
             }
         }
     }
 
     /// The other samples of those that need them.
-    void refine_row(int y, std::span<Tally> row) {
+    void refine_row(int y, std::span<PixelTally> row) {
         const auto most = static_cast<std::size_t>(config_.most_samples_per_pixel);
         for (int x = 0; x < view_.width; ++x) {
-            Tally& tally = row[static_cast<std::size_t>(x)];
+            PixelTally& tally = row[static_cast<std::size_t>(x)];
             if (!tally.is_noisy(config_.noise)) continue;
             for (auto k = static_cast<std::size_t>(config_.samples_per_pixel); k < most; k += lanes) {
                 count_ = std::min(lanes, most - k);
                 for (std::size_t lane = 0; lane < count_; ++lane) lane_[lane] = {x, y, k + lane};
                 take_samples();
-                for (std::size_t lane = 0; lane < count_; ++lane) tally.add(seen_[lane]);
+                for (std::size_t lane = 0; lane < count_; ++lane) add_to(tally, lane);
             }
         }
     }
@@ -127,8 +63,14 @@ class PacketRenderer {
   private:
     void take_samples() {
         trace_camera_rays();
-        if (lit_.direct != nullptr && !lit_.direct->empty()) add_lamps();
-        for (const LightInPlace& light : lit_.lights) add_light(light);
+        direct_.fill(Rgb(0));
+        for (std::size_t i = 0; i < lines_.count(); ++i) trace_shadows(i);
+    }
+
+    void add_to(PixelTally& tally, std::size_t lane) const {
+        const SeenPoint& seen = seen_[lane];
+        const Rgb interpolated = Interpolation::value(seen.stencil, lit_.irradiance, lit_.confidence);
+        tally.add(radiance_of(seen.emitted, seen.reflectance, interpolated, direct_[lane]), seen.surface);
     }
 
     void trace_camera_rays() {
@@ -138,68 +80,54 @@ class PacketRenderer {
             const auto& [x, y, k] = lane_[lane];
             const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(view_.width) +
                                static_cast<std::uint64_t>(x);
-            seed_[lane] = mixed(config_.seed, pixel);
-            const Sample4 s = camera_.at(k, seed_[lane]);
+            number_[lane] = {mixed(config_.seed, pixel), k};
+            const Sample4 s = camera_.at(k, number_[lane].pixel_seed);
             rays.set(lane, view_.ray(static_cast<float>(x) + s[0], static_cast<float>(y) + s[1]));
         }
         HitPacket hits;
         lit_.caster->nearest(rays, Scope::everything, hits);
         rays_traced_ += count_;
-        for (std::size_t lane = 0; lane < count_; ++lane)
+        for (std::size_t lane = 0; lane < count_; ++lane) {
             seen_[lane] = look_at(lit_, rays.ray(lane), hits[lane]);
-    }
-
-    void add_lamps() {
-        const auto samples = static_cast<std::size_t>(config_.light_samples_per_point);
-        for (std::size_t i = 0; i < samples; ++i) {
-            trace_shadows(1 / static_cast<float>(samples), [&](std::size_t lane) {
-                const Sample4 s = light_.at(lane_[lane].k * samples + i, mixed(seed_[lane]));
-                return lit_.direct->sample(seen_[lane].position, seen_[lane].normal, s[2], s[0], s[1]);
-            });
+            if (seen_[lane].takes_light())
+                lines_.look_from(seen_[lane].position, seen_[lane].normal, lamps_[lane]);
         }
     }
 
-    void add_light(const LightInPlace& light) {
-        trace_shadows(1, [&](std::size_t lane) {
-            const LightAtPoint at =
-                light_at(light.light, light.pose, seen_[lane].position, seen_[lane].normal);
-            return LightSample{at.irradiance, at.direction, at.distance_m};
-        });
-    }
-
-    /// Adds `share` of what each lane's sample gives where nothing stands between.
-    template <class SampleOf>
-    void trace_shadows(float share, const SampleOf& sample_of) {
+    /// Adds what each lane's line `i` brings where nothing stands between.
+    void trace_shadows(std::size_t i) {
         RayPacket rays;
         rays.count = static_cast<Index>(count_);
         std::array<Rgb, lanes> gain;
         Index alive = 0;
         for (std::size_t lane = 0; lane < count_; ++lane) {
-            SeenPoint& seen = seen_[lane];
-            const LightSample sample = max_channel(seen.reflectance) > 0 ? sample_of(lane) : LightSample{};
-            gain[lane] = share / pi * seen.reflectance * sample.irradiance;
-            const bool lit = max_channel(gain[lane]) > 0;
-            // A ray that ends where it starts is switched off; lamps themselves must not block.
-            const float far = lit ? sample.distance_m * (1 - 1e-4F) : 0.0F;
-            rays.set(lane, {seen.position, lit ? sample.direction : Vec3(0, 0, 1), far});
+            const SeenPoint& seen = seen_[lane];
+            const ShadowLine line =
+                seen.takes_light() ? lines_.at(i, number_[lane], lamps_[lane]) : ShadowLine{};
+            gain[lane] = line.irradiance;
+            const bool lit = line.brings_light();
+            // A ray that ends where it starts is switched off.
+            rays.set(lane, {seen.position, lit ? line.direction : Vec3(0, 0, 1), lit ? line.far_m : 0.0F});
             alive += lit ? 1U : 0U;
         }
         if (alive == 0) return;
         rays_traced_ += alive;
         const std::uint32_t blocked = lit_.caster->occluded(rays, Scope::everything);
         for (std::size_t lane = 0; lane < count_; ++lane)
-            if (((blocked >> lane) & 1U) == 0) seen_[lane].radiance += gain[lane];
+            if (((blocked >> lane) & 1U) == 0) direct_[lane] += gain[lane];
     }
 
     const CameraView& view_;
     const LitWorld& lit_;
     const PictureConfig& config_;
     const SobolPoints& camera_;
-    const SobolPoints& light_;
+    const ShadowLines& lines_;
     std::size_t count_ = 0;
     std::array<LaneSample, lanes> lane_;
-    std::array<std::uint64_t, lanes> seed_{};  // of the lane's pixel
+    std::array<SampleNumber, lanes> number_;
     std::array<SeenPoint, lanes> seen_;
+    std::array<DirectLight::Seen, lanes> lamps_;
+    std::array<Rgb, lanes> direct_;
     std::uint64_t rays_traced_ = 0;
 };
 
@@ -216,22 +144,19 @@ Rgb interpolated_irradiance(const LitWorld& lit, const Ray& ray, const Hit& hit)
 Picture render_picture(const CameraView& view, const LitWorld& lit, const PictureConfig& config,
                        std::uint64_t& rays_traced, const Context& context) {
     const auto width = static_cast<std::size_t>(view.width);
-    const auto samples =
-        static_cast<std::size_t>(std::max(config.samples_per_pixel, config.most_samples_per_pixel));
-    const SobolPoints camera_points(samples);
-    const SobolPoints light_points(samples * static_cast<std::size_t>(config.light_samples_per_point));
+    const SobolPoints camera_points(most_samples(config));
+    const ShadowLines lines(lit, config);
     Picture picture(view.width, view.height);
     std::atomic<std::uint64_t> traced = 0;
     context.for_chunks(static_cast<std::size_t>(view.height), 4, [&](std::size_t begin, std::size_t end) {
-        PacketRenderer renderer(view, lit, config, camera_points, light_points);
-        std::vector<Tally> row;
+        PacketRenderer renderer(view, lit, config, camera_points, lines);
+        std::vector<PixelTally> row;
         for (std::size_t y = begin; y < end; ++y) {
             row.assign(width, {});
             renderer.begin_row(static_cast<int>(y), row);
             renderer.refine_row(static_cast<int>(y), row);
             for (std::size_t x = 0; x < width; ++x)
-                picture.at(static_cast<int>(x), static_cast<int>(y)) =
-                    row[x].sum / static_cast<float>(row[x].count);
+                picture.at(static_cast<int>(x), static_cast<int>(y)) = row[x].mean();
         }
         traced += renderer.rays_traced();
     });

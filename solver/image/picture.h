@@ -1,34 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <span>
 
 #include "solver/base/context.h"
 #include "solver/base/pixels.h"
-#include "solver/formfactor/outside_light.h"
 #include "solver/image/camera.h"
-#include "solver/image/direct_light.h"
-#include "solver/mesh/interpolation.h"
-#include "solver/mesh/smooth_normals.h"
+#include "solver/image/lit_world.h"
 
 namespace afterglow {
-
-/// What a picture is made from, at one time.
-struct LitWorld {
-    const World* world = nullptr;
-    const PatchMesh* mesh = nullptr;
-    const Interpolation* interpolation = nullptr;
-    const SmoothNormals* normals = nullptr;
-    const RayCaster* caster = nullptr;    ///< with the bodies where they stand
-    std::span<const Material> materials;  ///< as they are at this time
-    /// By patch, W/m², interpolated: all of it, or what `direct` and `lights` do not bring.
-    std::span<const Rgb> irradiance;
-    std::span<const float> confidence;  ///< by patch: share of its lines that were of use
-    /// Lamps whose light is taken point by point, with shadows as sharp as they are; null: none.
-    const DirectLight* direct = nullptr;
-    std::span<const LightInPlace> lights;  ///< likewise, lights without a surface
-    float lift_m = 0;                      ///< of shadow rays off their surface
-};
 
 struct PictureConfig {
     int samples_per_pixel = 4;        ///< camera rays of every pixel, 1 or more, box-filtered
@@ -37,7 +17,14 @@ struct PictureConfig {
     /// Standard error of a pixel's first samples, relative to its mean, above which it gets the most samples.
     float noise = 0.03F;
     std::uint64_t seed = 1;  ///< of the places of the samples within pixels and on lamps
+
+    bool operator==(const PictureConfig&) const = default;
 };
+
+/// Samples of a noisy pixel in all.
+inline std::size_t most_samples(const PictureConfig& config) {
+    return static_cast<std::size_t>(std::max(config.samples_per_pixel, config.most_samples_per_pixel));
+}
 
 /// What `lit.irradiance` is, interpolated, where a ray meets a surface, W/m². Thread-safety: pure.
 Rgb interpolated_irradiance(const LitWorld& lit, const Ray& ray, const Hit& hit);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <utility>
+
 #include "solver/base/math.h"
 
 namespace afterglow {
@@ -22,5 +25,35 @@ struct RectanglePoint {
 /// the rectangle's solid angle. Source: Ureña, Fajardo and King 2013, "An area-preserving parametrization for
 /// spherical rectangles". Thread-safety: pure.
 RectanglePoint point_seen(const RectangleLight& light, const Vec3& from, float s, float t);
+
+/// A rectangle as one point sees it: what all points that are chosen from there share. Thread-safety: const
+/// after construction; the rectangle must outlive it.
+class RectangleView {
+  public:
+    RectangleView(const RectangleLight& light, const Vec3& from);
+
+    /// As `point_seen`.
+    [[nodiscard]] RectanglePoint at(float s, float t) const;
+
+  private:
+    /// The rectangle in its own frame around the viewpoint, in double: angles at near corners differ by
+    /// little.
+    struct Spherical {
+        double x0, x1, y0, y1, z;  // z < 0
+        double b0, b1, k, solid_angle;
+
+        Spherical(double left, double right, double low, double high, double depth);
+        /// (x, y) on the rectangle's plane.
+        [[nodiscard]] std::pair<double, double> at(double s, double t) const;
+    };
+    [[nodiscard]] RectanglePoint by_area(float s, float t) const;
+
+    const RectangleLight* light_;
+    Vec3 from_;
+    Vec3 normal_area_;
+    Vec3 x_axis_, y_axis_;
+    bool in_front_ = false;
+    std::optional<Spherical> near_;  // far away: none
+};
 
 }  // namespace afterglow

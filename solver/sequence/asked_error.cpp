@@ -60,6 +60,7 @@ QualityLevel level_for_error(double asked) {
     level.size_per_distance = between(a.size_per_distance, b.size_per_distance, t);
     level.rays_per_patch = whole_between(a.rays, b.rays, t);
     level.certificate = asked;
+    level.picture_tolerance = static_cast<float>(0.1 * error);
     level.picture.samples_per_pixel = whole_between(a.samples, b.samples, t);
     level.picture.most_samples_per_pixel = whole_between(a.most_samples, b.most_samples, t);
     level.picture.light_samples_per_point = whole_between(a.light_samples, b.light_samples, t);

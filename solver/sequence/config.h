@@ -65,8 +65,12 @@ struct SequenceConfig {
     std::string camera;                  ///< by name; empty: the first
     double frames_per_second = 0;        ///< frame n shows time n / fps; 0: the scene's own
     std::optional<double>
-        exposure_ev;         ///< stops added to the automatic exposure's neutral 0; automatic where not given
-    std::uint64_t seed = 1;  ///< of every random choice
+        exposure_ev;  ///< stops added to the automatic exposure's neutral 0; automatic where not given
+    /// By how much a patch's light may change, relative to the mean, before kept pictures follow; 0 or more.
+    /// A tenth of the picture's error where not given. 0: a frame is the same to the bit whatever came
+    /// before.
+    std::optional<double> picture_tolerance;
+    std::uint64_t seed = 1;                ///< of every random choice
     Revisions revisions = Revisions::all;  ///< see Revisions
     Estimate estimate = Estimate::none;    ///< see Estimate
     std::filesystem::path cache_folder;    ///< static rows are kept here; empty: not kept

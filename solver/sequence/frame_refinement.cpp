@@ -171,28 +171,37 @@ LitWorld FrameRefinement::lit_by(std::span<const Rgb> irradiance) const {
     return lit;
 }
 
-Picture FrameRefinement::picture(int width, int height, const LitWorld& lit, const PictureConfig& config,
-                                 const Context& context) {
+Picture FrameRefinement::preliminary_picture(int width, int height, const Context& context) {
     const Stopwatch watch;
     context.report(0.8, "rendering the picture");
+    const auto irradiance = irradiance_with_ambient(problem(), *light_);
     const CameraView view = view_at(parts_.camera, time_s_, width, height);
-    Picture made = render_picture(view, lit, config, statistics_.rays_traced, context);
+    Picture made = render_picture(view, lit_by(irradiance), {1, 1, 0, 0, parts_.config.seed},
+                                  statistics_.rays_traced, context);
     statistics_.image += watch.elapsed();
     return made;
 }
 
-Picture FrameRefinement::preliminary_picture(int width, int height, const Context& context) {
-    const auto irradiance = irradiance_with_ambient(problem(), *light_);
-    return picture(width, height, lit_by(irradiance), {1, 1, 0, 0, parts_.config.seed}, context);
-}
-
 Picture FrameRefinement::final_picture(const Context& context) {
+    const Stopwatch watch;
+    context.report(0.8, "rendering the picture");
     const auto indirect = indirect_irradiance();
     const DirectLight direct = direct_light();
     LitWorld lit = lit_by(indirect);
     lit.direct = &direct;
     lit.lights = lights_;
-    return picture(parts_.config.width, parts_.config.height, lit, level_of(parts_.config).picture, context);
+    const CameraView view = view_at(parts_.camera, time_s_, parts_.config.width, parts_.config.height);
+    const QualityLevel level = level_of(parts_.config);
+    Picture made;
+    if (parts_.camera.path.moves()) {
+        made = render_picture(view, lit, level.picture, statistics_.rays_traced, context);
+    } else {
+        const KeptPictureConfig config{level.picture, level.picture_tolerance};
+        statistics_.rays_traced += step(parts_.picture, view, lit, config, context).rays_traced;
+        made = parts_.picture.picture;
+    }
+    statistics_.image += watch.elapsed();
+    return made;
 }
 
 void FrameRefinement::estimate_error(const Picture& final_picture, const Context& context) {

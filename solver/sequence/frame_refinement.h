@@ -44,8 +44,6 @@ class FrameRefinement {
     [[nodiscard]] std::vector<Rgb> radiosity() const;
     [[nodiscard]] DirectLight direct_light() const;
     [[nodiscard]] LitWorld lit_by(std::span<const Rgb> irradiance) const;
-    Picture picture(int width, int height, const LitWorld& lit, const PictureConfig& config,
-                    const Context& context);
 
     SequenceState::Parts& parts_;
     int frame_;

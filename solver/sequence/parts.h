@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "solver/base/hash.h"
-#include "solver/image/picture.h"
+#include "solver/image/kept_picture.h"
 #include "solver/mesh/interpolation.h"
 #include "solver/radiosity/residual.h"
 #include "solver/sequence/sequence.h"
@@ -40,6 +40,7 @@ struct SequenceState::Parts {
     std::vector<Index> visible_before;
     std::uint64_t frames_shown = 0;
     std::optional<KeptLight> kept_light;  ///< of a solution that keeps it
+    KeptPictureState picture;             ///< the final one of the frame before; empty where the camera moves
     std::optional<float> exposure_ev;     ///< set once, for all frames
     SequenceStatistics statistics;
     Warnings warnings;

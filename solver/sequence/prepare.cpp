@@ -45,6 +45,9 @@ void check(const SequenceConfig& config) {
             "patch_size", "must be above 0 metres");
     require(!config.asked_error || (*config.asked_error > 0 && *config.asked_error < 1), "error",
             "must lie between 0 and 1");
+    require(!config.picture_tolerance ||
+                (*config.picture_tolerance >= 0 && std::isfinite(*config.picture_tolerance)),
+            "picture_tolerance", "must be 0 or more");
     require(config.width >= 1 && config.width <= 16384 && config.height >= 1 && config.height <= 16384,
             "size", "must be from 1 to 16384 pixels each way");
     require(config.frames_per_second >= 0 && std::isfinite(config.frames_per_second), "fps",

@@ -15,6 +15,7 @@ struct QualityLevel {
     int rays_per_patch = 256;        ///< where the settings name none
     double certificate = 0.02;       ///< relative error at which a solution is finished
     PictureConfig picture;           ///< its seed is the settings'
+    float picture_tolerance = 0;     ///< see KeptPictureConfig::tolerance
     ProbeConfig probes;              ///< likewise; as many paths as the error to be told needs
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <utility>
 
 namespace afterglow {
 
@@ -36,6 +37,7 @@ std::uint64_t BackBuffer::update(const LineScene& scene, const DirectionRange& r
     std::uint64_t rays = own_.update(scene, range, visible, context);
     if (range.first == 0) rays += own_light_.update(scene, visible, context);
     if (range.last <= shown_) return rays;
+    looked_ = true;
 
     find_encounters(scene, range, context);
     std::atomic<std::uint64_t> traced = 0;
@@ -49,6 +51,11 @@ std::uint64_t BackBuffer::update(const LineScene& scene, const DirectionRange& r
     });
     if (range.first <= shown_) shown_ = range.last;
     return rays + traced;
+}
+
+std::optional<LineChanges> BackBuffer::take_changes() {
+    if (std::exchange(looked_, false)) return std::nullopt;
+    return LineChanges{};
 }
 
 void BackBuffer::find_encounters(const LineScene& scene, const DirectionRange& range,

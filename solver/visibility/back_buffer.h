@@ -19,6 +19,8 @@ class BackBuffer final : public VisibilityStrategy {
     [[nodiscard]] bool needs_background() const override { return true; }
     std::uint64_t update(const LineScene& scene, const DirectionRange& range, VisibleLines& visible,
                          const Context& context) override;
+    /// None where no static line has been looked along since the last call; else it does not know.
+    [[nodiscard]] std::optional<LineChanges> take_changes() override;
 
   private:
     void find_encounters(const LineScene& scene, const DirectionRange& range, const Context& context);
@@ -34,6 +36,7 @@ class BackBuffer final : public VisibilityStrategy {
     Index directions_ = 0;                     ///< whose encounters are known
     bool lamps_known_ = false;
     Index shown_ = 0;  ///< directions that `visible` shows as they are now; the light lines, too, unless 0
+    bool looked_ = true;  ///< along static lines, since changes were last asked for
     OwnLines own_;
     OwnLightLines own_light_;
 };

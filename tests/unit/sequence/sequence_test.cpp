@@ -1,7 +1,10 @@
 #include "solver/sequence/sequence.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <random>
 #include <unistd.h>
 
 #include <gmock/gmock.h>
@@ -25,6 +28,7 @@ SequenceConfig quick() {
     config.solution = Solution::residual;
     config.width = 48;
     config.height = 32;
+    config.picture_tolerance = 0;
     return config;
 }
 
@@ -185,6 +189,66 @@ TEST(Sequence, FollowingFramesChangeWhatComparingFinds) {
     EXPECT_GT(changes[0][1], 0U);
 }
 
+TEST(Sequence, KeptPicturesAreThoseOfFramesMadeAlone) {
+    constexpr int frames = 20;
+    SequenceConfig config = quick();
+    config.revisions = Revisions::final_only;
+    config.quality = Quality::preview;
+    config.solution = Solution::progressive;
+    const Context context(2);
+    // The camera of the fresh ones moves, beyond the frames that are shown: nothing is kept.
+    World restless = small_room();
+    Key<Pose> later = restless.cameras.front().path.keys.front();
+    restless.cameras.front().path.keys.push_back({99, later.value});
+    later.value.translation.x += 1;
+    restless.cameras.front().path.keys.push_back({100, later.value});
+    SequenceState fresh = make_state(std::move(restless), config, context);
+    std::vector<Picture> expected(frames);
+    for (int f = 0; f < frames; ++f)
+        step(
+            fresh, f, [&](const Revision& r) { expected[static_cast<std::size_t>(f)] = r.radiance; },
+            context);
+
+    std::vector<int> order(frames);
+    std::iota(order.begin(), order.end(), 0);
+    SequenceState state = make_state(small_room(), config, context);
+    const auto expect_same = [&](const char* name) {
+        for (const int f : order)
+            step(
+                state, f,
+                [&](const Revision& r) {
+                    EXPECT_TRUE(same_bits(r.radiance, expected[static_cast<std::size_t>(f)]))
+                        << name << ", frame " << f;
+                },
+                context);
+    };
+    expect_same("on");
+    std::reverse(order.begin(), order.end());
+    expect_same("back");
+    std::shuffle(order.begin(), order.end(), std::mt19937(3));
+    expect_same("at random");
+}
+
+TEST(Sequence, APicturesToleranceIsKept) {
+    SequenceConfig config = quick();
+    config.revisions = Revisions::final_only;
+    std::vector<std::vector<Picture>> pictures;
+    for (const double tolerance : {0.0, 0.01}) {
+        config.picture_tolerance = tolerance;
+        auto& run = pictures.emplace_back();
+        for (const Revision& r : revisions_of(small_room(), config, 0, 12)) run.push_back(r.radiance);
+    }
+    for (std::size_t f = 0; f < pictures.front().size(); ++f) {
+        double squares = 0, light = 0;
+        for (std::size_t k = 0; k < pictures[0][f].pixels.size(); ++k) {
+            const Rgb d = pictures[1][f].pixels[k] - pictures[0][f].pixels[k];
+            squares += static_cast<double>(glm::dot(d, d));
+            light += static_cast<double>(glm::dot(pictures[0][f].pixels[k], pictures[0][f].pixels[k]));
+        }
+        EXPECT_LE(std::sqrt(squares / light), 0.01) << "frame " << f;
+    }
+}
+
 TEST(Sequence, WorkAheadIsToldAndInNoFramesTotal) {
     SequenceConfig config = quick();
     config.visibility = Visibility::events;
@@ -296,6 +360,7 @@ TEST(Sequence, BadSettingsAreNamed) {
     EXPECT_EQ(place_of([](SequenceConfig& c) { c.patch_size_m = 1e-5; }), "patch_size");
     EXPECT_EQ(place_of([](SequenceConfig& c) { c.asked_error = 0; }), "error");
     EXPECT_EQ(place_of([](SequenceConfig& c) { c.width = 0; }), "size");
+    EXPECT_EQ(place_of([](SequenceConfig& c) { c.picture_tolerance = -0.1; }), "picture_tolerance");
     EXPECT_EQ(place_of([](SequenceConfig& c) { c.camera = "nowhere"; }), "camera");
     EXPECT_EQ(place_of([](SequenceConfig& c) { c.frames_per_second = -24; }), "fps");
     EXPECT_EQ(place_of([](SequenceConfig&) {}), "accepted");

@@ -1,0 +1,149 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solver/image/camera.h"
+#include "solver/image/picture_tiles.h"
+#include "solver/image/shadow_lines.h"
+#include "solver/image/shadow_region.h"
+
+namespace afterglow {
+
+/// A patch and its share of what is interpolated at a point.
+struct PatchWeight {
+    Index patch = no_index;
+    float weight = 0;
+};
+
+/// One camera sample of a picture that is kept: what it shows now, and what it would show without actors,
+/// which stays. Its ray follows from the pixel and is not stored.
+struct KeptSample {
+    enum class Known : std::uint8_t {
+        nothing,  ///< never looked at
+        hit,      ///< which surface of the furniture it meets; an actor has covered it ever since
+        light,    ///< all below
+    };
+    /// Shadow lines whose way past the furniture is remembered; those beyond are traced anew.
+    static constexpr std::size_t remembered_lines = 32;
+
+    Rgb radiance{0};           ///< now
+    Index surface = no_index;  ///< now, as SeenPoint::surface
+
+    float distance = 0;  ///< to the furniture, metres
+    Index triangle = no_index;
+    float u = 0, v = 0;  ///< as in Hit
+    Vec3 position{0};    ///< as in SeenPoint, likewise
+    Rgb reflectance{0};
+    Rgb direct{0};                ///< irradiance by its shadow lines past the furniture, W/m²
+    std::uint32_t unblocked = 0;  ///< bit i: shadow line i brings light past the furniture
+    std::uint32_t first_weight = 0;
+    std::uint8_t weights = 0;
+    Side side = Side::front;
+    Known known = Known::nothing;
+    bool emits = false;  ///< of itself, by its material
+
+    [[nodiscard]] Hit hit() const {
+        return {triangle == no_index ? no_index : furniture, triangle, side, distance, u, v};
+    }
+};
+
+/// The samples of a tile's pixels; pixels row by row, those outside the picture unused.
+struct KeptTile {
+    static constexpr std::size_t pixels = PictureTiles::edge * PictureTiles::edge;
+
+    std::vector<KeptSample> first;              ///< of all pixels, pixel by pixel
+    std::vector<KeptSample> further;            ///< of those that ever were noisy
+    std::array<Index, pixels> first_further{};  ///< where a pixel's begin; no_index: none
+    std::array<bool, pixels> shows_further{};   ///< whether they are in the picture, and up to date
+    std::vector<PatchWeight> weights;           ///< of all samples
+    std::vector<Index> patches;                 ///< that `weights` name, rising
+    Box positions;                              ///< of samples that take light
+
+    KeptTile() { first_further.fill(no_index); }
+    /// After samples have become known.
+    void note_patches();
+    [[nodiscard]] std::size_t bytes() const;
+};
+
+/// Actors as one tile's samples may see them.
+struct TileActors {
+    bool may_cover = false;                    ///< camera rays may meet one
+    std::vector<const ShadowRegion*> shadows;  ///< that may reach its points
+};
+
+/// A sample to be looked at.
+struct SampleTask {
+    KeptSample* sample = nullptr;
+    int x = 0, y = 0;   ///< its pixel
+    std::size_t k = 0;  ///< its number within the pixel
+};
+
+/// Brings samples up to date, sixteen at a time: each is traced against the furniture once, and from then on
+/// against the actors only, where these may come between. Gives the radiances that `render_picture` would.
+/// One thread at a time.
+class SampleUpdater {
+  public:
+    SampleUpdater(const CameraView& view, const LitWorld& lit, const PictureConfig& config,
+                  const SobolPoints& camera_points, const ShadowLines& lines);
+
+    /// What the samples see now, whatever it was. Some are done only by `finish`.
+    void update(KeptTile& tile, const TileActors& actors, std::span<const SampleTask> tasks);
+    /// Likewise, for a sample that knows its light and sees the furniture, before as now.
+    void relight(const KeptTile& tile, const TileActors& actors, const SampleTask& task);
+    /// To be called before what has been updated is read.
+    void finish();
+    [[nodiscard]] std::uint64_t rays_traced() const { return rays_traced_; }
+
+  private:
+    static constexpr std::size_t lanes = 16;
+    /// What is known of a point's shadow lines.
+    enum class Lines { unknown, past_furniture, none_kept };
+    /// A point whose shadow lines are to be traced.
+    struct Point {
+        SampleTask task;
+        Rgb emitted{0}, reflectance{0}, interpolated{0};
+        Vec3 position{0}, normal{0};
+        bool in_reach = true;  ///< of actors' shadows
+    };
+    /// Points that wait until sixteen can be traced together, all of one kind.
+    struct Queue {
+        Lines lines = Lines::unknown;
+        std::array<Point, lanes> points;
+        std::size_t count = 0;
+    };
+    /// A shadow line of each of a queue's points; those without one are switched off.
+    struct LinePacket {
+        RayPacket rays;
+        std::array<Rgb, lanes> gain;
+        std::uint32_t alive = 0;
+    };
+
+    void meet(KeptTile& tile, const TileActors& actors, std::span<const SampleTask> tasks);
+    void meet_furniture(std::span<const SampleTask> tasks, const RayPacket& rays);
+    void look_at_furniture(KeptTile& tile, const TileActors& actors, const SampleTask& task, const Ray& ray);
+    void recall(const KeptTile& tile, const TileActors& actors, const SampleTask& task);
+    void look_at_actor(const SampleTask& task, const Ray& ray, const Hit& hit);
+    [[nodiscard]] Ray ray_of(const SampleTask& task) const;
+    [[nodiscard]] SampleNumber number_of(const SampleTask& task) const;
+
+    void add(Queue& queue, const Point& point);
+    void flush(Queue& queue);
+    [[nodiscard]] LinePacket shadow_lines(const Queue& queue, std::size_t i);
+    std::uint32_t occluded(const LinePacket& lines, Scope scope);
+    std::uint32_t occluded_by_actors(const Queue& queue, LinePacket lines, std::uint32_t among);
+
+    const CameraView& view_;
+    const LitWorld& lit_;
+    const PictureConfig& config_;
+    const SobolPoints& camera_;
+    const ShadowLines& lines_;
+    Queue on_furniture_, on_actors_, remembered_;
+    std::array<DirectLight::Seen, lanes> lamps_;
+    std::uint64_t rays_traced_ = 0;
+};
+
+}  // namespace afterglow
