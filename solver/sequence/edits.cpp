@@ -53,11 +53,11 @@ void set_lamps(SequenceState::Parts& parts, Lamps lamps, const Context& context)
     lay_light_lines(parts);
     parts.strategy = make_strategy(parts.config.visibility, parts.world, parts.clock());
     parts.kept_light.reset();
-    parts.kept_picture = {};
+    parts.picture = {};
     if (parts.background.directions == 0) return;
     StaticLines& background = parts.background;
     background.light_contribution.assign(parts.visible.light_contribution.size(), 0);
-    trace_light_lines(*parts.light, *parts.sight, parts.mesh, parts.caster, Scope::static_geometry,
+    trace_light_lines(*parts.light, *parts.sight, parts.caster, Scope::static_geometry,
                       background.light_contribution, context);
     parts.background_key = static_key(parts.world, parts.mesh, *parts.sight, parts.lamps,
                                       parts.light->lines_per_patch(), parts.config.seed);
@@ -66,7 +66,7 @@ void set_lamps(SequenceState::Parts& parts, Lamps lamps, const Context& context)
 /// Everything but the scene itself, from the beginning.
 EditOutcome begin_anew(SequenceState::Parts& parts, const Context& context) {
     parts.kept_light.reset();
-    parts.kept_picture = {};
+    parts.picture = {};
     parts.visible_before.clear();
     parts.background = {};
     mesh_world(parts, context);
