@@ -29,7 +29,7 @@ struct PictureUpdate {
 };
 
 /// A picture and what is needed to bring it to another time: by camera sample what the furniture shows there.
-/// About 90 bytes a sample. One thread at a time.
+/// About 130 bytes a sample. One thread at a time.
 struct KeptPictureState {
     Picture picture;
     bool whole = false;  ///< `picture` is what the rest says; not so after a stop or before the first step
