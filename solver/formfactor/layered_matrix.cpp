@@ -1,11 +1,11 @@
 #include "solver/formfactor/layered_matrix.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <numeric>
 
 #include "solver/base/error.h"
+#include "solver/formfactor/covered_lines.h"
 #include "solver/formfactor/row_counter.h"
 
 namespace afterglow {
@@ -14,22 +14,6 @@ namespace {
 
 constexpr std::size_t blocks_per_chunk = 8;
 constexpr std::size_t rows_per_chunk = 512;
-
-/// What a sight line counts for in its row.
-Index column_of(const LayeredMatrix& matrix, const Lamps& lamps, Index row, Index target) {
-    if (target == sees_nothing || target == sees_inside) return matrix.nowhere();
-    const Index lamp = lamps.lamp_of_patch[target];
-    if (lamp != no_index && matrix.ledger.by_light_lines[row * lamps.list.size() + lamp] != 0)
-        return matrix.nowhere();
-    return target;
-}
-
-/// Which kind of target a sight line meets, as its row tallies it.
-Index& tallied(LineTally& tally, Index target, bool counts) {
-    if (target == sees_nothing) return tally.outside;
-    if (target == sees_inside) return tally.buried;
-    return counts ? tally.on_others : tally.on_lamps;
-}
 
 void end_row(RowCounter& counter, FormFactorMatrix& matrix) {
     counter.end_row([&](Index column, float value) {
@@ -153,174 +137,6 @@ void compile_whole(LayeredMatrix& matrix, const LayerScene& scene, const Visible
     matrix.whole = std::move(rows.matrix);
 }
 
-/// The static patch that a line belongs to, by its number. Static blocks follow each other, all full but the
-/// last.
-Index row_of(const LayerScene& scene, std::size_t line, Index lines_per_patch) {
-    const auto some_patch = static_cast<Index>(line / lines_per_patch);
-    const Index first = some_patch - some_patch % block_size;
-    const Index count = std::min(block_size, scene.mesh.static_size() - first);
-    return first + static_cast<Index>((line - std::size_t{first} * lines_per_patch) % count);
-}
-
-/// Brings the rows of consecutive blocks from what they showed last to what their lines show.
-class Layers {
-  public:
-    Layers(LayeredMatrix& matrix, const LayerScene& scene, RowChanges& changes)
-        : matrix_(matrix), scene_(scene), changes_(changes) {
-        changes_.sight.clear();
-        changes_.light.clear();
-        changes_.lines = 0;
-    }
-
-    /// Sight lines of one block, those of a row by number and time.
-    void show_sight(const PatchBlock& block, std::span<const LineChange> changes) {
-        const std::size_t first = scene_.sight.line(block, 0, 0);
-        for (const LineChange& change : changes)
-            by_lane_[(change.line - first) % block.count].push_back(change);
-        for (Index lane = 0; lane < block.count; ++lane) {
-            if (!by_lane_[lane].empty()) show_row(block.first + lane, by_lane_[lane]);
-            by_lane_[lane].clear();
-        }
-        changes_.lines += changes.size();
-    }
-
-    void show_light(Index line, float contribution) {
-        const float value = scene_.background.light_contribution[line];
-        const Index lines = scene_.light.lines_per_patch();
-        const Index row = row_of(scene_, line, lines);
-        const PatchBlock& block = scene_.sight.blocks()[row / block_size];
-        const Index k = (line - static_cast<Index>(scene_.light.line(block, 0, 0))) / block.count;
-        const Index lamp_patch = scene_.light.lamp_patch(row / block_size, k);
-        if (!(value > 0) || column_of(matrix_, scene_.lamps, row, lamp_patch) != matrix_.nowhere()) return;
-        std::vector<CoveredLine>& dark = matrix_.light.lines[row];
-        std::vector<CoveredEntry>& entries = matrix_.light.covered[row];
-        const auto at = std::lower_bound(dark.begin(), dark.end(), line,
-                                         [](const CoveredLine& a, Index b) { return a.line < b; });
-        const bool was_covered = at != dark.end() && at->line == line, is_covered = !(contribution > 0);
-        if (was_covered == is_covered) return;
-        const Index nowhere = matrix_.nowhere();
-        if (is_covered) {
-            entries.insert(entries.begin() + (at - dark.begin()), {lamp_patch, nowhere, value});
-            dark.insert(at, {line, lamp_patch, sees_inside});
-            changes_.light.push_back({row, lamp_patch, nowhere, value});
-        } else {
-            entries.erase(entries.begin() + (at - dark.begin()));
-            dark.erase(at);
-            changes_.light.push_back({row, nowhere, lamp_patch, value});
-        }
-    }
-
-  private:
-    /// Merges what changed into a row's covered lines.
-    void show_row(Index row, std::span<const LineChange> changes) {
-        std::vector<CoveredLine>& lines = matrix_.sight.lines[row];
-        std::vector<CoveredEntry>& entries = matrix_.sight.covered[row];
-        lines_.clear();
-        entries_.clear();
-        std::size_t kept = 0;  // of the old ones, so many have been dealt with
-        const auto keep_up_to = [&](std::size_t end) {
-            lines_.insert(lines_.end(), lines.begin() + static_cast<std::ptrdiff_t>(kept),
-                          lines.begin() + static_cast<std::ptrdiff_t>(end));
-            entries_.insert(entries_.end(), entries.begin() + static_cast<std::ptrdiff_t>(kept),
-                            entries.begin() + static_cast<std::ptrdiff_t>(end));
-            kept = end;
-        };
-        for (std::size_t c = 0; c < changes.size();) {
-            LineChange change = changes[c];
-            for (++c; c < changes.size() && changes[c].line == change.line; ++c) change.to = changes[c].to;
-            std::size_t place = kept;
-            while (place < lines.size() && lines[place].line < change.line) ++place;
-            keep_up_to(place);
-            const bool known = place < lines.size() && lines[place].line == change.line;
-            // An open line comes from its background, so that need not be looked up.
-            const Index background = known ? lines[place].background : change.from;
-            const Index base =
-                known ? entries[place].base : column_of(matrix_, scene_.lamps, row, background);
-            note(row, change, known ? entries[place].now : base, {change.line, background, change.to}, base);
-            if (known) ++kept;
-        }
-        keep_up_to(lines.size());
-        lines.assign(lines_.begin(), lines_.end());
-        entries.assign(entries_.begin(), entries_.end());
-    }
-
-    /// Puts one line where it belongs in tally, layer and list.
-    void note(Index row, const LineChange& change, Index before, const CoveredLine& line, Index base) {
-        const Index now = column_of(matrix_, scene_.lamps, row, change.to);
-        LineTally& tally = matrix_.ledger.tally[row];
-        --tallied(tally, change.from, before != matrix_.nowhere());
-        ++tallied(tally, change.to, now != matrix_.nowhere());
-        if (before != now) changes_.sight.push_back({row, before, now, 1});
-        if (change.to == line.background) return;
-        lines_.push_back(line);
-        entries_.push_back({base, now, 1});
-    }
-
-    LayeredMatrix& matrix_;
-    const LayerScene& scene_;
-    RowChanges& changes_;
-    std::array<std::vector<LineChange>, block_size> by_lane_;
-    std::vector<CoveredLine> lines_;  // of the row in hand
-    std::vector<CoveredEntry> entries_;
-};
-
-/// Looks for what one block's lines show otherwise than the layers do.
-class Comparison {
-  public:
-    Comparison(const LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible)
-        : matrix_(matrix), scene_(scene), visible_(visible) {}
-
-    /// Sight lines of a block, by direction and lane.
-    void find_sight(std::size_t b, std::vector<LineChange>& found) const {
-        const PatchBlock& block = scene_.sight.blocks()[b];
-        Cursors next = first_covered(block, matrix_.sight);
-        for (Index d = 0; d < scene_.sight.lines_per_patch(); ++d)
-            for (Index lane = 0; lane < block.count; ++lane) {
-                const auto line = static_cast<Index>(scene_.sight.line(block, d, lane));
-                const CoveredLine* covered = next[lane].take(line);
-                const Index from =
-                    covered != nullptr ? covered->target : scene_.background.background.patch[line];
-                if (visible_.patch[line] != from) found.push_back({line, from, visible_.patch[line]});
-            }
-    }
-
-    /// Light lines that are open or dark otherwise than the layers have it.
-    void find_light(std::size_t b, std::vector<Index>& found) const {
-        const PatchBlock& block = scene_.sight.blocks()[b];
-        Cursors next = first_covered(block, matrix_.light);
-        for (Index k = 0; k < scene_.light.lines_per_patch(); ++k)
-            for (Index lane = 0; lane < block.count; ++lane) {
-                const auto line = static_cast<Index>(scene_.light.line(block, k, lane));
-                const bool covered = next[lane].take(line) != nullptr;
-                const bool open = visible_.light_contribution[line] > 0;
-                if (covered == open && scene_.background.light_contribution[line] > 0) found.push_back(line);
-            }
-    }
-
-  private:
-    /// Walks a row's covered lines as their numbers come by.
-    struct Cursor {
-        std::span<const CoveredLine> left;
-
-        const CoveredLine* take(Index line) {
-            if (left.empty() || left.front().line != line) return nullptr;
-            const CoveredLine* taken = left.data();
-            left = left.subspan(1);
-            return taken;
-        }
-    };
-    using Cursors = std::array<Cursor, block_size>;  ///< by lane
-    static Cursors first_covered(const PatchBlock& block, const LayeredRows& layer) {
-        Cursors cursors;
-        for (Index lane = 0; lane < block.count; ++lane) cursors[lane] = {layer.lines[block.first + lane]};
-        return cursors;
-    }
-
-    const LayeredMatrix& matrix_;
-    const LayerScene& scene_;
-    const VisibleLines& visible_;
-};
-
 /// What is left to do once the layers show the lines that changed.
 void finish(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
             const Context& context) {
@@ -339,7 +155,7 @@ void for_blocks(LayeredMatrix& matrix, const LayerScene& scene, const Context& c
     std::vector<RowChanges>& parts = matrix.ledger.changes;
     parts.resize((blocks + blocks_per_chunk - 1) / blocks_per_chunk);
     context.for_chunks(blocks, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
-        Layers layers(matrix, scene, parts[begin / blocks_per_chunk]);
+        CoverUpdate layers(matrix, scene, parts[begin / blocks_per_chunk]);
         for (std::size_t b = begin; b < end; ++b) work(b, layers);
     });
 }
@@ -369,8 +185,8 @@ LayeredMatrix make_layered_matrix(const LayerScene& scene, const Context& contex
 
 std::span<const RowChanges> show(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
                                  const Context& context) {
-    const Comparison comparison(matrix, scene, visible);
-    for_blocks(matrix, scene, context, [&](std::size_t b, Layers& layers) {
+    const CoverComparison comparison(matrix, scene, visible);
+    for_blocks(matrix, scene, context, [&](std::size_t b, CoverUpdate& layers) {
         LineChanges found;
         comparison.find_sight(b, found.sight);
         comparison.find_light(b, found.light);
@@ -387,7 +203,7 @@ std::span<const RowChanges> show(LayeredMatrix& matrix, const LayerScene& scene,
     if (!std::is_sorted(changes.sight.begin(), changes.sight.end(), by_line))
         std::stable_sort(changes.sight.begin(), changes.sight.end(), by_line);
     std::sort(changes.light.begin(), changes.light.end());
-    for_blocks(matrix, scene, context, [&](std::size_t b, Layers& layers) {
+    for_blocks(matrix, scene, context, [&](std::size_t b, CoverUpdate& layers) {
         const PatchBlock& block = scene.sight.blocks()[b];
         const auto from = [&](Index direction) {
             const LineChange first{static_cast<Index>(scene.sight.line(block, direction, 0)), 0, 0};

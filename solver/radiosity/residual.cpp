@@ -14,6 +14,10 @@ constexpr std::size_t rows_per_chunk = 512;
 // Frames after which every sum has been computed afresh.
 constexpr std::size_t refresh_period = 64;
 
+bool is_any(const DoubleLanes& light) {
+    return light.v[0] != 0 || light.v[1] != 0 || light.v[2] != 0;
+}
+
 void add_light(DoubleLanes& sum, float value, const DoubleLanes::Vector& light) {
     sum.v += static_cast<double>(value) * light;
 }
@@ -30,6 +34,7 @@ void gather_rows(ResidualState& state, const ResidualProblem& problem, std::size
     for (std::size_t row = first; row < last; ++row) {
         state.by_sight[row] = gather_layer(problem.matrix.sight, row, state.radiosity);
         state.by_light[row] = gather_layer(problem.matrix.light, row, state.radiosity);
+        state.worn[row] = 0;
     }
 }
 
@@ -209,7 +214,7 @@ class Pusher {
         state_.radiosity[i] = to_lanes(to_rgb(before) + state_.residual[i]);
         const DoubleLanes::Vector change = to_double(state_.radiosity[i]).v - to_double(before).v;
         change_[i].v += change;
-        state_.pushes += change[0] != 0 || change[1] != 0 || change[2] != 0 ? 1 : 0;
+        state_.pushes += is_any({change}) ? 1 : 0;
         return {__builtin_convertvector(change, Lanes::Vector)};
     }
 
@@ -244,11 +249,14 @@ class Pusher {
     void settle(const Context& context) {
         context.for_chunks(problem_.matrix.rows(), rows_per_chunk, [&](std::size_t first, std::size_t last) {
             for (std::size_t row = first; row < last; ++row) {
-                state_.by_sight[row].v += to_double(by_sight_[row]).v;
-                state_.by_light[row].v += to_double(by_light_[row]).v;
+                DoubleLanes sight = to_double(by_sight_[row]), light = to_double(by_light_[row]);
                 by_sight_[row] = by_light_[row] = {};
-                cover(problem_.matrix.sight.covered[row], state_.by_sight[row]);
-                cover(problem_.matrix.light.covered[row], state_.by_light[row]);
+                cover(problem_.matrix.sight.covered[row], sight);
+                cover(problem_.matrix.light.covered[row], light);
+                if (!is_any(sight) && !is_any(light)) continue;
+                state_.by_sight[row].v += sight.v;
+                state_.by_light[row].v += light.v;
+                state_.worn[row] = 1;
             }
         });
         std::fill(change_.begin(), change_.end(), DoubleLanes{});
@@ -298,6 +306,7 @@ ResidualState make_residual_state(const ResidualProblem& problem, const Context&
     state.by_light.resize(patches);
     state.irradiance.assign(patches, Rgb(0));
     state.residual.assign(patches, Rgb(0));
+    state.worn.assign(patches, 0);
     gather_all(state, problem, context);
     return state;
 }
@@ -306,9 +315,11 @@ void follow(ResidualState& state, const ResidualProblem& problem, std::span<cons
             const Context& context) {
     check(problem, state.irradiance.size());
     const auto apply = [&](std::span<const RowChange> list, std::vector<DoubleLanes>& sums) {
-        for (const RowChange& change : list)
+        for (const RowChange& change : list) {
             add_light(sums[change.row], change.value,
                       to_double(state.radiosity[change.to]).v - to_double(state.radiosity[change.from]).v);
+            state.worn[change.row] = 1;
+        }
     };
     context.for_chunks(changes.size(), 1, [&](std::size_t part, std::size_t) {
         apply(changes[part].sight, state.by_sight);
@@ -318,7 +329,8 @@ void follow(ResidualState& state, const ResidualProblem& problem, std::span<cons
     const std::size_t first = std::min(state.next_refresh, problem.matrix.rows());
     const std::size_t last = std::min(first + share, problem.matrix.rows());
     context.for_chunks(last - first, share, [&](std::size_t begin, std::size_t end) {
-        gather_rows(state, problem, first + begin, first + end);
+        for (std::size_t row = first + begin; row < first + end; ++row)
+            if (state.worn[row] != 0) gather_rows(state, problem, row, row + 1);
     });
     state.next_refresh = last < problem.matrix.rows() ? last : 0;
 }

@@ -59,7 +59,10 @@ struct ResidualState {
     std::uint64_t pushes = 0;           ///< patches whose radiosity was changed, over all rounds
     std::uint64_t rounds = 0;           ///< of them, or sweeps
     std::uint64_t sweeps = 0;
-    std::size_t next_refresh = 0;  ///< the row from which on sums are computed afresh in the next frame
+    /// By row, not 0: its sums were added to since they were computed. Only these are ever computed afresh,
+    /// so that light which nothing reaches keeps every bit.
+    std::vector<std::uint8_t> worn;
+    std::size_t next_refresh = 0;  ///< the row from which on worn sums are computed afresh in the next frame
     ResidualStatus status = ResidualStatus::running;
 
     /// Room to work in that is kept, since it takes longer to get than to use; means nothing between calls.
@@ -75,8 +78,9 @@ struct ResidualState {
 /// Errors: invalid_input where sizes do not agree; cancelled.
 ResidualState make_residual_state(const ResidualProblem& problem, const Context& context);
 
-/// Takes over what changed in the layers since the state's sums were right, and computes a share of all sums
-/// afresh, so that rounding is forgotten after 64 calls at the latest. `problem.matrix` is as `show` left it.
+/// Takes over what changed in the layers since the state's sums were right, and computes a share of all worn
+/// sums afresh, so that rounding is forgotten after 64 calls at the latest. `problem.matrix` is as `show`
+/// left it.
 void follow(ResidualState& state, const ResidualProblem& problem, std::span<const RowChanges> changes,
             const Context& context);
 

@@ -9,11 +9,15 @@ namespace afterglow {
 
 namespace {
 
-constexpr std::array<Method, 4> all_methods{{
+constexpr std::array<Method, 6> all_methods{{
     {"auto", Visibility::automatic, Solution::automatic, "by what the scene needs, and says which"},
     {"full", Visibility::retrace, Solution::progressive, "everything traced and solved anew at every frame"},
     {"baum86", Visibility::back_buffer, Solution::progressive,
      "static background kept, actors traced, solved anew"},
+    {"chen90", Visibility::retrace, Solution::incremental,
+     "everything traced, and the light corrected by what changed"},
+    {"tost-pueyo93", Visibility::temporal_graph, Solution::active_passive,
+     "actors in order of depth; light corrected, hidden patches of little consequence waiting"},
     {"events", Visibility::events, Solution::residual,
      "what lines come to see is found ahead, and only what changes is solved"},
 }};
@@ -30,9 +34,11 @@ constexpr std::array<Named<Visibility>, 5> visibilities{{
     {"temporal-graph", Visibility::temporal_graph},
     {"events", Visibility::events},
 }};
-constexpr std::array<Named<Solution>, 3> solutions{{
+constexpr std::array<Named<Solution>, 5> solutions{{
     {"auto", Solution::automatic},
     {"progressive", Solution::progressive},
+    {"incremental", Solution::incremental},
+    {"active-passive", Solution::active_passive},
     {"residual", Solution::residual},
 }};
 constexpr std::array<Named<Quality>, 3> qualities{{

@@ -20,9 +20,11 @@ enum class Visibility {
 
 /// How each frame's light is solved.
 enum class Solution {
-    automatic,    ///< likewise
-    progressive,  ///< Cohen et al. 1988: shooting, cold every frame
-    residual,     ///< the last frame's light, corrected where it no longer balances
+    automatic,       ///< likewise
+    progressive,     ///< Cohen et al. 1988: shooting, cold every frame
+    incremental,     ///< Chen 1990: the last frame's light, and plus or minus what changes bring
+    active_passive,  ///< Tost and Pueyo 1993: likewise, hidden patches of little consequence waiting
+    residual,        ///< the last frame's light, corrected where it no longer balances
 };
 
 /// How fine the patches, lines and samples are, in three steps; see QualityLevel.

@@ -53,6 +53,7 @@ void set_lamps(SequenceState::Parts& parts, Lamps lamps, const Context& context)
     lay_light_lines(parts);
     parts.strategy = make_strategy(parts.config.visibility, parts.world, parts.clock());
     parts.kept_light.reset();
+    parts.kept_rows.reset();
     parts.picture = {};
     if (parts.background.directions == 0) return;
     StaticLines& background = parts.background;
@@ -66,6 +67,7 @@ void set_lamps(SequenceState::Parts& parts, Lamps lamps, const Context& context)
 /// Everything but the scene itself, from the beginning.
 EditOutcome begin_anew(SequenceState::Parts& parts, const Context& context) {
     parts.kept_light.reset();
+    parts.kept_rows.reset();
     parts.picture = {};
     parts.visible_before.clear();
     parts.background = {};

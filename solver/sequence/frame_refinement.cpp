@@ -1,11 +1,13 @@
 #include "solver/sequence/frame_refinement.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "solver/base/stopwatch.h"
 #include "solver/formfactor/two_halves.h"
 #include "solver/image/line_noise.h"
 #include "solver/radiosity/ambient.h"
+#include "solver/sequence/patch_roles.h"
 #include "solver/sequence/prepare.h"
 #include "solver/sequence/quality.h"
 
@@ -60,14 +62,25 @@ RadiosityProblem FrameRefinement::problem() const {
     return {factors_.matrix, parts_.mesh.area_m2, emission_, reflectance_, outside_};
 }
 
-void FrameRefinement::solve(double asked_error, const Context& context) {
-    const Stopwatch compiling;
+void FrameRefinement::prepare_rows(const Context& context) {
+    const Stopwatch watch;
     compile(context);
     light_from_outside(factors_.valid_share, factors_.sky, context);
-    statistics_.visibility += compiling.elapsed();
-
-    const Stopwatch watch;
+    statistics_.visibility += watch.elapsed();
     context.report(0.6, "solving the light");
+}
+
+void FrameRefinement::take_rows_light(const ProgressiveState& light, std::uint64_t shots_before) {
+    irradiance_ = light.irradiance;
+    from_lamps_ = irradiance_from_lamps();
+    valid_share_ = factors_.valid_share;
+    exhausted_ = light.status == ProgressiveStatus::exhausted;
+    note_solution(light.shots - shots_before);
+}
+
+void FrameRefinement::solve(double asked_error, const Context& context) {
+    prepare_rows(context);
+    const Stopwatch watch;
     ProgressiveConfig config;
     config.asked_error = asked_error;
     // Cold every time: the same light whatever was solved for a preliminary picture before.
@@ -75,15 +88,73 @@ void FrameRefinement::solve(double asked_error, const Context& context) {
     do {
         certificate_ = step(*light_, problem(), columns_, config, context.part(0.6, 0.8));
     } while (light_->status == ProgressiveStatus::running);
-    irradiance_ = light_->irradiance;
-    from_lamps_ = irradiance_from_lamps();
-    valid_share_ = factors_.valid_share;
-    exhausted_ = light_->status == ProgressiveStatus::exhausted;
-    note_solution(light_->shots);
+    take_rows_light(*light_, 0);
     statistics_.solve += watch.elapsed();
 }
 
-void FrameRefinement::follow(double asked_error, const Context& context) {
+void FrameRefinement::solve_finally(double asked_error, const Context& context) {
+    switch (parts_.config.solution) {
+        case Solution::automatic:
+        case Solution::progressive:
+            return solve(asked_error, context);
+        case Solution::incremental:
+            return follow_changes(asked_error, context);
+        case Solution::active_passive:
+            return follow_active(asked_error, context);
+        case Solution::residual:
+            return follow_layers(asked_error, context);
+    }
+}
+
+void FrameRefinement::follow_changes(double asked_error, const Context& context) {
+    prepare_rows(context);
+    const Stopwatch watch;
+    // Left for good only once all is done, as in follow_layers.
+    std::optional<KeptRows> kept = std::exchange(parts_.kept_rows, std::nullopt);
+    ProgressiveConfig config;
+    config.asked_error = asked_error;
+    if (kept) {
+        change(*kept->incremental, problem(), changed_rows(kept->rows, factors_.matrix, context), context);
+        config = following_config(asked_error);
+    } else {
+        kept.emplace().incremental = make_incremental_state(problem(), context);
+    }
+    const std::uint64_t shots_before = kept->incremental->shots;
+    do {
+        certificate_ = step(*kept->incremental, problem(), columns_, config, context.part(0.6, 0.8));
+    } while (kept->incremental->status == ProgressiveStatus::running);
+    take_rows_light(*kept->incremental, shots_before);
+    kept->rows = factors_.matrix;
+    statistics_.solve += watch.elapsed();
+    parts_.kept_rows = std::move(kept);
+}
+
+void FrameRefinement::follow_active(double asked_error, const Context& context) {
+    prepare_rows(context);
+    const Stopwatch watch;
+    const PatchRoleLists lists = roles_at(parts_, frame_, statistics_.rays_traced, context);
+    std::optional<KeptRows> kept = std::exchange(parts_.kept_rows, std::nullopt);
+    ActivePassiveConfig config;
+    config.asked_error = asked_error;
+    if (kept)
+        change(*kept->active_passive, problem(), changed_rows(kept->rows, factors_.matrix, context),
+               lists.view(), config, context);
+    else
+        kept.emplace().active_passive = make_active_passive_state(problem(), lists.view(), config, context);
+    ActivePassiveState& light = *kept->active_passive;
+    const std::uint64_t shots_before = light.shots;
+    do {
+        certificate_ = step(light, problem(), columns_, lists.view(), config, context.part(0.6, 0.8));
+    } while (light.status == ProgressiveStatus::running);
+    take_rows_light(light, shots_before);
+    statistics_.active_patches =
+        static_cast<std::uint64_t>(std::count(light.active.begin(), light.active.end(), std::uint8_t{1}));
+    kept->rows = factors_.matrix;
+    statistics_.solve += watch.elapsed();
+    parts_.kept_rows = std::move(kept);
+}
+
+void FrameRefinement::follow_layers(double asked_error, const Context& context) {
     const Stopwatch looking;
     // Left for good only once all is done: a stop in the middle leaves nothing half brought up to date.
     std::optional<KeptLight> kept = std::exchange(parts_.kept_light, std::nullopt);

@@ -20,8 +20,9 @@ class FrameRefinement {
     void look(Index directions, VisibilityStrategy& strategy, const Context& context);
     /// Solves, from nothing, until the certificate is met.
     void solve(double asked_error, const Context& context);
-    /// Solves from what the last frame left, likewise. All lines must have been looked along.
-    void follow(double asked_error, const Context& context);
+    /// Solves as the sequence's solution does, from what the last frame left if it keeps anything, likewise.
+    /// All lines must have been looked along.
+    void solve_finally(double asked_error, const Context& context);
     /// What is solved so far, with an estimate of the light still on its way.
     Picture preliminary_picture(int width, int height, const Context& context);
     Picture final_picture(const Context& context);
@@ -37,6 +38,11 @@ class FrameRefinement {
     void compile(const Context& context);
     void light_from_outside(std::span<const float> valid_share, std::span<const float> sky,
                             const Context& context);
+    void prepare_rows(const Context& context);
+    void follow_layers(double asked_error, const Context& context);
+    void follow_changes(double asked_error, const Context& context);
+    void follow_active(double asked_error, const Context& context);
+    void take_rows_light(const ProgressiveState& light, std::uint64_t shots_before);
     void note_solution(std::uint64_t shots);
     [[nodiscard]] RadiosityProblem problem() const;
     [[nodiscard]] std::vector<Rgb> irradiance_from_lamps() const;

@@ -6,6 +6,7 @@
 #include "solver/base/hash.h"
 #include "solver/image/kept_picture.h"
 #include "solver/mesh/interpolation.h"
+#include "solver/radiosity/active_passive.h"
 #include "solver/radiosity/residual.h"
 #include "solver/sequence/sequence.h"
 #include "solver/visibility/strategy.h"
@@ -16,6 +17,13 @@ namespace afterglow {
 struct KeptLight {
     LayeredMatrix matrix;
     std::optional<ResidualState> state;
+};
+
+/// The same for solutions that work on rows compiled anew.
+struct KeptRows {
+    FormFactorMatrix rows;
+    std::optional<IncrementalState> incremental;
+    std::optional<ActivePassiveState> active_passive;
 };
 
 /// What a sequence keeps from frame to frame. Parts point at each other, so they stay where they are: behind
@@ -40,6 +48,7 @@ struct SequenceState::Parts {
     std::vector<Index> visible_before;
     std::uint64_t frames_shown = 0;
     std::optional<KeptLight> kept_light;  ///< of a solution that keeps it
+    std::optional<KeptRows> kept_rows;    ///< likewise
     KeptPictureState picture;             ///< the final one of the frame before; empty where the camera moves
     std::optional<float> exposure_ev;     ///< set once, for all frames
     SequenceStatistics statistics;

@@ -83,7 +83,7 @@ std::vector<Index> preliminary_looks(const SequenceState::Parts& parts) {
     std::vector<Index> looks;
     if (parts.frames_shown == 0) looks = {std::max(all / 16, Index{4}), std::max(all / 4, Index{8})};
     // What follows the last frame is there before a preliminary picture could be.
-    if (!parts.kept_light) looks.push_back(all);
+    if (!parts.kept_light && !parts.kept_rows) looks.push_back(all);
     return looks;
 }
 
@@ -117,14 +117,6 @@ std::uint64_t count_changes(SequenceState::Parts& parts) {
         for (std::size_t i = 0; i < now.size(); ++i) changes += now[i] != parts.visible_before[i] ? 1U : 0U;
     parts.visible_before.assign(now.begin(), now.end());
     return changes;
-}
-
-void solve_finally(const SequenceState::Parts& parts, FrameRefinement& frame, const Context& context) {
-    const double asked_error = level_of(parts.config).certificate;
-    if (parts.config.solution == Solution::residual)
-        frame.follow(asked_error, context);
-    else
-        frame.solve(asked_error, context);
 }
 
 }  // namespace
@@ -182,7 +174,7 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     }
     const Context last = context.part(0.6, 1);
     frame.look(all, *parts.strategy, last);
-    solve_finally(parts, frame, last);
+    frame.solve_finally(level_of(parts.config).certificate, last);
     warn_of_exhaustion(parts, frame, frame_number);
     Picture picture = frame.final_picture(last);
     if (parts.config.estimate == Estimate::probes) frame.estimate_error(picture, last);

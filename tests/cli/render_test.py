@@ -121,7 +121,7 @@ class Frames(Case):
         self.assertEqual(self.bytes_of("several")["frame_0006.exr"], self.bytes_of("alone")["frame_0006.exr"])
 
     def test_every_method_renders(self):
-        for method in ("full", "baum86", "events", "auto"):
+        for method in ("full", "baum86", "chen90", "tost-pueyo93", "events", "auto"):
             self.render("--frames", "2", "--method", method, "--out", method, "--report", f"{method}.json")
             # A single frame has nothing to reuse.
             used = "full" if method == "auto" else method

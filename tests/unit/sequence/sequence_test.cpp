@@ -156,6 +156,29 @@ TEST(Sequence, FollowedLightIsTheColdOneWithinItsPromise) {
     }
 }
 
+TEST(Sequence, EverySolutionsLightIsTheColdOneWithinItsPromise) {
+    const Context context(2);
+    for (const Solution solution :
+         {Solution::progressive, Solution::incremental, Solution::active_passive, Solution::residual}) {
+        SequenceConfig config = quick();
+        config.visibility = Visibility::back_buffer;
+        config.solution = solution;
+        config.rays_per_patch = 32;
+        config.asked_error = 0.001;
+        SequenceState state = make_state(small_room(), config, context);
+        config.solution = Solution::progressive;
+        for (const int frame : {0, 1, 2, 40, 3}) {
+            Picture followed;
+            const FrameStatistics statistics = step(
+                state, frame, [&](const Revision& r) { followed = r.radiance; }, context);
+            EXPECT_LE(statistics.error_bound, 0.001) << name_of(solution) << " frame " << frame;
+            EXPECT_GT(statistics.active_patches, 0U);
+            EXPECT_LE(largest_difference(followed, final_of(small_room(), config, frame)), 0.004)
+                << name_of(solution) << " frame " << frame;
+        }
+    }
+}
+
 TEST(Sequence, WhereAllActorsRestNotAPixelFlickers) {
     SequenceConfig config = quick();
     config.visibility = Visibility::events;
