@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <numeric>
 #include <random>
 #include <unistd.h>
@@ -269,6 +270,36 @@ TEST(Sequence, APicturesToleranceIsKept) {
             light += static_cast<double>(glm::dot(pictures[0][f].pixels[k], pictures[0][f].pixels[k]));
         }
         EXPECT_LE(std::sqrt(squares / light), 0.01) << "frame " << f;
+    }
+}
+
+TEST(Sequence, NoLineIsTracedTwiceWhereOnlyTheCameraMoves) {
+    std::map<int, std::uint64_t> picture_rays;
+    for (const Visibility visibility :
+         {Visibility::back_buffer, Visibility::temporal_graph, Visibility::events}) {
+        World world = small_room();
+        for (std::size_t b = 1; b < world.bodies.size(); ++b) {
+            const Pose here = world.bodies[b].path.at(0.5);
+            world.bodies[b].path.keys = {{0, here}, {2, here}};
+        }
+        const Pose from = world.cameras.front().path.at(0);
+        Pose to = from;
+        to.translation += Vec3(0.2F, 0.1F, 0);
+        world.cameras.front().path.keys = {{0, from}, {1, to}};
+        SequenceConfig config = quick();
+        config.visibility = visibility;
+        SequenceState state = make_state(std::move(world), config, Context(2));
+        for (const int frame : {0, 1, 2, 9, 4}) {
+            const FrameStatistics statistics = step(state, frame, {}, Context(2));
+            // What is left are the picture's own rays, the same whatever the strategy.
+            const auto [rays, is_new] = picture_rays.try_emplace(frame, statistics.rays_traced);
+            if (frame > 0) {
+                EXPECT_EQ(statistics.rays_traced, rays->second) << name_of(visibility) << " " << frame;
+                EXPECT_LT(statistics.rays_traced, state.statistics().sight_lines / 8);
+                EXPECT_EQ(statistics.visibility_changes, 0U) << name_of(visibility) << " " << frame;
+            }
+        }
+        EXPECT_TRUE(state.statistics().work_ahead.empty());
     }
 }
 

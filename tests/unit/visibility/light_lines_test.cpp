@@ -65,6 +65,40 @@ TEST(LightLines, AnActorCastsItsShadow) {
     for (Index k = 0; k < 64; ++k) EXPECT_EQ(contribution[lined.light.line(first, k, 0)], 0);
 }
 
+TEST(LightLines, OfMovingPatchesRepeatAndStillSampleAllOfTheLamp) {
+    World world = testing::empty_world(0.5F);
+    add_quad(world.bodies[furniture], Vec3(0, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1), 1);
+    add_quad(world.bodies[furniture], Vec3(-20, -30, -20), Vec3(40, 0, 0), Vec3(0, 0, 40), 0);
+    Path rest;
+    rest.keys = {{0, {Vec3(0.5F, -0.01F, 0.5F), Quat(1, 0, 0, 0)}}};
+    testing::add_actor(world, "receiver", Vec3(0.5F, 0.01F, 0.5F), 0, rest);
+    const LinedWorld lined(std::move(world), 0.5F, 16);
+    const LightLines light(lined.mesh, lined.sight, lined.lamps, 256, 5, {4, 1});
+    std::vector<float> contribution(std::size_t{lined.mesh.size()} * 256, 0);
+    trace_light_lines(light, lined.sight, lined.caster, Scope::everything, contribution, Context(1));
+    // The outside of its top; the inside of its bottom faces up, too.
+    const auto is_top = [&](Index patch) {
+        return lined.mesh.body[patch] != furniture && lined.mesh.normal[patch].y > 0.9F &&
+               lined.mesh.side[patch] == Side::front;
+    };
+    double sum = 0, area = 0;
+    for (const PatchBlock& block : lined.sight.blocks()) {
+        for (Index lane = 0; lane < block.count; ++lane) {
+            const float patch_area = lined.mesh.area_m2[block.first + lane];
+            if (is_top(block.first + lane)) area += patch_area;
+            for (Index k = 0; k < 256; ++k) {
+                const Index same = light.first_same(block, k);
+                ASSERT_EQ(same, block.body == furniture ? k : k / 4 * 4);
+                const float value = contribution[light.line(block, k, lane)];
+                ASSERT_EQ(value, contribution[light.line(block, same, lane)]);
+                if (is_top(block.first + lane)) sum += double{value} * patch_area;
+            }
+        }
+    }
+    // Closed form 1 of the design.
+    EXPECT_NEAR(sum / area, 0.199824895698, 0.01 * 0.199824895698);
+}
+
 TEST(LightLines, NoLampsNoLines) {
     World world = testing::empty_world();
     add_box(world.bodies[furniture], Vec3(0), Vec3(1), 0, testing::Facing::inwards);

@@ -152,9 +152,9 @@ World world_with_rests() {
     world.bodies.resize(1);
     const Quat level(1, 0, 0, 0);
     Path left, right, moving;
-    left.keys = {{0, {Vec3(1, 1, 1.5F), level}}};
-    right.keys = {{0, {Vec3(3, 1, 1.5F), level}}};
-    moving.keys = {{1, {Vec3(3.7F, 2.2F, 4.5F), level}}, {4, {Vec3(2, 1, 1.5F), level}}};
+    left.keys = {{0, {Vec3(1, 1.13F, 1.5F), level}}};
+    right.keys = {{0, {Vec3(3, 1.13F, 1.5F), level}}};
+    moving.keys = {{1, {Vec3(3.7F, 2.2F, 4.5F), level}}, {4, {Vec3(2, 1.17F, 1.5F), level}}};
     testing::add_actor(world, "left", Vec3(0.3F), 0, left);
     testing::add_actor(world, "right", Vec3(0.3F), 0, right);
     testing::add_actor(world, "moving", Vec3(0.2F), 0, moving);
