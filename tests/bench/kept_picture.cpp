@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "solver/scene/load.h"
+#include "tests/bench/timing.h"
 #include "tests/support/solved_world.h"
 
 namespace afterglow {
@@ -17,20 +18,6 @@ namespace {
 
 constexpr int first_frame = 12;
 constexpr double frames_per_second = 24;
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-/// CPU time of all threads, which other work on the machine disturbs less than it does the clock on the wall.
-double ms_of(const std::function<void()>& work) {
-    const std::clock_t start = std::clock();
-    work();
-    return 1000.0 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
 
 /// The light of one frame that pictures interpolate.
 struct FrameLight {

@@ -13,6 +13,7 @@
 #include "solver/image/camera.h"
 #include "solver/radiosity/active_passive.h"
 #include "solver/scene/load.h"
+#include "tests/bench/timing.h"
 #include "tests/support/solved_world.h"
 
 namespace afterglow {
@@ -22,19 +23,6 @@ using testing::SolvedWorld;
 
 constexpr double frames_per_second = 24;
 const Context one_thread(1);
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-double ms_of(const std::function<void()>& work) {
-    const std::clock_t start = std::clock();
-    work();
-    return 1000.0 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
 
 /// Which patches are seen, which move, and what they belong to.
 struct Roles {

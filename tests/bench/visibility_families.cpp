@@ -15,6 +15,7 @@
 #include "solver/visibility/events.h"
 #include "solver/visibility/line_events.h"
 #include "solver/visibility/reach.h"
+#include "tests/bench/timing.h"
 #include "tests/support/worlds.h"
 
 namespace afterglow {
@@ -24,19 +25,6 @@ constexpr int frames = 96;
 constexpr FrameClock frame_clock{24};
 constexpr Index lines_per_patch = 64;
 constexpr float patch_size_m = 0.35F;
-
-double ms_of(const std::function<void()>& work) {
-    const std::clock_t start = std::clock();
-    work();
-    return 1000.0 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// What a scene of the family is made of.
 struct Member {

@@ -15,6 +15,7 @@
 #include "solver/visibility/own_light_lines.h"
 #include "solver/visibility/own_lines.h"
 #include "solver/visibility/reach.h"
+#include "tests/bench/timing.h"
 
 namespace afterglow {
 namespace {
@@ -48,20 +49,6 @@ struct Room {
         return std::size_t{mesh.static_size()} * sight.lines_per_patch();
     }
 };
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-/// CPU time of all threads, which other work on the machine disturbs less than it does the clock on the wall.
-double ms_of(const std::function<void()>& work) {
-    const std::clock_t start = std::clock();
-    work();
-    return 1000.0 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
 
 struct Row {
     const char* name;
