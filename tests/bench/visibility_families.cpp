@@ -14,6 +14,7 @@
 
 #include "solver/visibility/events.h"
 #include "solver/visibility/line_events.h"
+#include "solver/visibility/own_lines.h"
 #include "solver/visibility/reach.h"
 #include "tests/bench/timing.h"
 #include "tests/support/worlds.h"
@@ -122,11 +123,6 @@ void retrace(Scene& scene, int) {
     scene.trace(0, scene.sight.static_blocks());
 }
 
-void back_buffer(Scene& scene, int) {
-    trace_over_background(scene.sight, scene.mesh, scene.caster, scene.background.background,
-                          {0, lines_per_patch}, scene.visible.patch, scene.context);
-}
-
 /// What `events` does about static patches' sight lines.
 class Events {
   public:
@@ -171,15 +167,17 @@ Costs run(Scene& scene, int frames_measured, int stride, Work work) {
     return costs;
 }
 
-/// Its updates, and the actors' own lines that it traces as well taken off.
-Costs run_temporal_graph(Scene& scene, int frames_measured) {
-    const auto strategy = make_temporal_graph(scene.world, frame_clock);
-    Costs costs = run(scene, frames_measured, 1, [&](Scene& in, int frame) {
-        strategy->update({in.mesh, in.sight, in.no_light, in.caster, in.background, frame},
-                         {0, lines_per_patch}, in.visible, in.context);
+/// A strategy's updates, and the actors' own lines that it looks along as well taken off.
+Costs run_strategy(Scene& scene, VisibilityStrategy& strategy, int frames_measured, int stride) {
+    const auto lines = [](const Scene& in, int frame) {
+        return LineScene{in.mesh, in.sight, in.no_light, in.caster, in.background, frame};
+    };
+    Costs costs = run(scene, frames_measured, stride, [&](Scene& in, int frame) {
+        strategy.update(lines(in, frame), {0, lines_per_patch}, in.visible, in.context);
     });
-    const Costs own = run(scene, frames_measured, 1, [](Scene& in, int) {
-        in.trace(in.sight.static_blocks(), in.sight.blocks().size());
+    OwnLines own_lines(scene.world);
+    const Costs own = run(scene, frames_measured, stride, [&](Scene& in, int frame) {
+        own_lines.update(lines(in, frame), {0, lines_per_patch}, in.visible, in.context);
     });
     for (std::size_t k = 0; k < costs.frame_ms.size(); ++k) costs.frame_ms[k] -= own.frame_ms[k];
     return costs;
@@ -196,8 +194,10 @@ void print(const Scene& scene, const Member& member, const char* strategy, const
 void measure(const Member& member) {
     Scene scene(member);
     print(scene, member, "retrace", run(scene, 6, frames / 6, retrace), 0);
-    print(scene, member, "back-buffer", run(scene, 6, frames / 6, back_buffer), scene.static_ms);
-    print(scene, member, "temporal-graph", run_temporal_graph(scene, 16), scene.static_ms);
+    print(scene, member, "back-buffer",
+          run_strategy(scene, *make_back_buffer(scene.world, frame_clock), 6, frames / 6), scene.static_ms);
+    print(scene, member, "temporal-graph",
+          run_strategy(scene, *make_temporal_graph(scene.world, frame_clock), 16, 1), scene.static_ms);
     print(scene, member, "events", run(scene, frames, 1, Events(scene)), scene.static_ms);
 }
 
