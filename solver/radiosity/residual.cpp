@@ -11,8 +11,8 @@ namespace afterglow {
 namespace {
 
 constexpr std::size_t rows_per_chunk = 512;
-// Frames after which every sum has been computed afresh.
-constexpr std::size_t refresh_period = 64;
+// Additions after which a row's sums are computed afresh, so that rounding never accumulates.
+constexpr std::uint8_t most_wear = 64;
 
 bool is_any(const DoubleLanes& light) {
     return light.v[0] != 0 || light.v[1] != 0 || light.v[2] != 0;
@@ -34,7 +34,8 @@ void gather_rows(ResidualState& state, const ResidualProblem& problem, std::size
     for (std::size_t row = first; row < last; ++row) {
         state.by_sight[row] = gather_layer(problem.matrix.sight, row, state.radiosity);
         state.by_light[row] = gather_layer(problem.matrix.light, row, state.radiosity);
-        state.worn[row] = 0;
+        // They began together; each is computed afresh in its own turn.
+        state.wear[row] = static_cast<std::uint8_t>(row % most_wear);
     }
 }
 
@@ -256,7 +257,7 @@ class Pusher {
                 if (!is_any(sight) && !is_any(light)) continue;
                 state_.by_sight[row].v += sight.v;
                 state_.by_light[row].v += light.v;
-                state_.worn[row] = 1;
+                if (++state_.wear[row] >= most_wear) gather_rows(state_, problem_, row, row + 1);
             }
         });
         std::fill(change_.begin(), change_.end(), DoubleLanes{});
@@ -306,7 +307,7 @@ ResidualState make_residual_state(const ResidualProblem& problem, const Context&
     state.by_light.resize(patches);
     state.irradiance.assign(patches, Rgb(0));
     state.residual.assign(patches, Rgb(0));
-    state.worn.assign(patches, 0);
+    state.wear.assign(patches, 0);
     gather_all(state, problem, context);
     return state;
 }
@@ -318,21 +319,12 @@ void follow(ResidualState& state, const ResidualProblem& problem, std::span<cons
         for (const RowChange& change : list) {
             add_light(sums[change.row], change.value,
                       to_double(state.radiosity[change.to]).v - to_double(state.radiosity[change.from]).v);
-            state.worn[change.row] = 1;
         }
     };
     context.for_chunks(changes.size(), 1, [&](std::size_t part, std::size_t) {
         apply(changes[part].sight, state.by_sight);
         apply(changes[part].light, state.by_light);
     });
-    const std::size_t share = problem.matrix.rows() / refresh_period + 1;
-    const std::size_t first = std::min(state.next_refresh, problem.matrix.rows());
-    const std::size_t last = std::min(first + share, problem.matrix.rows());
-    context.for_chunks(last - first, share, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = first + begin; row < first + end; ++row)
-            if (state.worn[row] != 0) gather_rows(state, problem, row, row + 1);
-    });
-    state.next_refresh = last < problem.matrix.rows() ? last : 0;
 }
 
 Certificate step(ResidualState& state, const ResidualProblem& problem, const ResidualConfig& config,

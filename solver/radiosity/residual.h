@@ -59,10 +59,9 @@ struct ResidualState {
     std::uint64_t pushes = 0;           ///< patches whose radiosity was changed, over all rounds
     std::uint64_t rounds = 0;           ///< of them, or sweeps
     std::uint64_t sweeps = 0;
-    /// By row, not 0: its sums were added to since they were computed. Only these are ever computed afresh,
-    /// so that light which nothing reaches keeps every bit.
-    std::vector<std::uint8_t> worn;
-    std::size_t next_refresh = 0;  ///< the row from which on worn sums are computed afresh in the next frame
+    /// How often pushes reached a row since its sums were computed; at 64 they are computed afresh. Light
+    /// that nothing reaches so keeps every bit.
+    std::vector<std::uint8_t> wear;
     ResidualStatus status = ResidualStatus::running;
 
     /// Room to work in that is kept, since it takes longer to get than to use; means nothing between calls.
@@ -78,9 +77,9 @@ struct ResidualState {
 /// Errors: invalid_input where sizes do not agree; cancelled.
 ResidualState make_residual_state(const ResidualProblem& problem, const Context& context);
 
-/// Takes over what changed in the layers since the state's sums were right, and computes a share of all worn
-/// sums afresh, so that rounding is forgotten after 64 calls at the latest. `problem.matrix` is as `show`
-/// left it.
+/// Takes over what changed in the layers since the state's sums were right. `problem.matrix` is as `show`
+/// left it, in one part of `changes` all of a row. Errors: as make_residual_state; then the state is of no
+/// more use.
 void follow(ResidualState& state, const ResidualProblem& problem, std::span<const RowChanges> changes,
             const Context& context);
 

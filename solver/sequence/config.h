@@ -69,8 +69,8 @@ struct SequenceConfig {
     std::optional<double>
         exposure_ev;  ///< stops added to the automatic exposure's neutral 0; automatic where not given
     /// By how much a patch's light may change, relative to the mean, before kept pictures follow; 0 or more.
-    /// A tenth of the picture's error where not given. 0: a frame is the same to the bit whatever came
-    /// before.
+    /// Where not given, a tenth of the picture's error, and 0 with a solution that is cold every frame. 0:
+    /// the picture follows every change.
     std::optional<double> picture_tolerance;
     std::uint64_t seed = 1;                ///< of every random choice
     Revisions revisions = Revisions::all;  ///< see Revisions

@@ -41,6 +41,8 @@ QualityLevel level_of(const SequenceConfig& config) {
     QualityLevel level =
         error_settles_all(config) ? level_for_error(*config.asked_error) : level_for(config.quality);
     if (config.asked_error) level.certificate = *config.asked_error;
+    // Where each frame's light is solved anew, nothing of its picture depends on the frames before.
+    if (config.solution == Solution::progressive) level.picture_tolerance = 0;
     if (config.picture_tolerance) level.picture_tolerance = static_cast<float>(*config.picture_tolerance);
     if (config.rays_per_patch) level.rays_per_patch = *config.rays_per_patch;
     level.picture.seed = config.seed;
