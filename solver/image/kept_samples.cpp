@@ -256,7 +256,9 @@ std::uint32_t SampleUpdater::occluded(const LinePacket& lines, Scope scope) {
 }
 
 /// Of the lines `among` those that end on an actor.
-std::uint32_t SampleUpdater::occluded_by_actors(const Queue& queue, LinePacket lines, std::uint32_t among) {
+std::uint32_t SampleUpdater::occluded_by_actors(const Queue& queue, const LinePacket& all,
+                                                std::uint32_t among) {
+    LinePacket lines = all;
     lines.alive = 0;
     for (std::size_t lane = 0; lane < queue.count; ++lane) {
         if (((among >> lane) & 1U) != 0 && queue.points[lane].in_reach)

@@ -134,7 +134,7 @@ class SampleUpdater {
     void flush(Queue& queue);
     [[nodiscard]] LinePacket shadow_lines(const Queue& queue, std::size_t i);
     std::uint32_t occluded(const LinePacket& lines, Scope scope);
-    std::uint32_t occluded_by_actors(const Queue& queue, LinePacket lines, std::uint32_t among);
+    std::uint32_t occluded_by_actors(const Queue& queue, const LinePacket& all, std::uint32_t among);
 
     const CameraView& view_;
     const LitWorld& lit_;

@@ -54,7 +54,8 @@ std::vector<Index> tiles_covered(const CameraView& view, const PictureTiles& til
         const auto [first_row, last_row] = tiles_between(top, bottom, tiles.down);
         for (int row = first_row; row <= last_row; ++row)
             for (int column = first_column; column <= last_column; ++column)
-                touched[static_cast<std::size_t>(row * tiles.across + column)] = 1;
+                touched[static_cast<std::size_t>(row) * static_cast<std::size_t>(tiles.across) +
+                        static_cast<std::size_t>(column)] = 1;
     }
     std::vector<Index> covered;
     for (Index t = 0; t < touched.size(); ++t)

@@ -27,18 +27,18 @@ inline Pose mixed(const Pose& a, const Pose& b, float s) {
 }
 
 /// Which of two values holds where a track jumps.
-enum class Side {
+enum class JumpSide {
     before,  ///< the one the track comes from
     after,   ///< the one it goes on with: what a picture at that time shows
 };
 
 /// Value of keys in order of time, constant outside them. `keys` must not be empty. Thread-safety: pure.
 template <class T>
-T value_in(std::span<const Key<T>> keys, double time_s, Side side = Side::after) {
+T value_in(std::span<const Key<T>> keys, double time_s, JumpSide side = JumpSide::after) {
     const auto earlier = [](const Key<T>& key, double time) { return key.time_s < time; };
     const auto later = [](double time, const Key<T>& key) { return time < key.time_s; };
-    const auto next = side == Side::after ? std::upper_bound(keys.begin(), keys.end(), time_s, later)
-                                          : std::lower_bound(keys.begin(), keys.end(), time_s, earlier);
+    const auto next = side == JumpSide::after ? std::upper_bound(keys.begin(), keys.end(), time_s, later)
+                                              : std::lower_bound(keys.begin(), keys.end(), time_s, earlier);
     if (next == keys.begin()) return keys.front().value;
     if (next == keys.end()) return keys.back().value;
     const auto previous = next - 1;

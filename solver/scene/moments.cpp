@@ -29,7 +29,7 @@ void add_frames(std::vector<Moment>& moments, double frames_per_second) {
         const double from = moments[k].time_s + apart_s;
         const double to = moments[k + 1].time_s - apart_s;
         for (double frame = std::ceil(from * frames_per_second); frame / frames_per_second < to; ++frame)
-            moments.push_back({frame / frames_per_second, Side::after});
+            moments.push_back({frame / frames_per_second, JumpSide::after});
     }
     std::sort(moments.begin(), moments.end(), is_before);
 }

@@ -11,15 +11,16 @@ namespace afterglow {
 /// A point in time at which a path needs a key; at a jump there is one for either side.
 struct Moment {
     double time_s = 0;
-    Side side = Side::after;
+    JumpSide side = JumpSide::after;
 };
 
 /// Adds the key times of one track, unsorted.
 template <class T>
 void add_moments(std::vector<Moment>& moments, const std::vector<Key<T>>& keys) {
     for (std::size_t k = 0; k < keys.size(); ++k) {
-        moments.push_back({keys[k].time_s, Side::after});
-        if (k > 0 && keys[k - 1].time_s == keys[k].time_s) moments.push_back({keys[k].time_s, Side::before});
+        moments.push_back({keys[k].time_s, JumpSide::after});
+        if (k > 0 && keys[k - 1].time_s == keys[k].time_s)
+            moments.push_back({keys[k].time_s, JumpSide::before});
     }
 }
 

@@ -47,7 +47,7 @@ Quat rigid_rotation(const Mat3& linear, const Mat3& baked, const std::string& pl
 
 }  // namespace
 
-Transform NodeMotion::at(double time_s, Side side) const {
+Transform NodeMotion::at(double time_s, JumpSide side) const {
     Transform out = local;
     if (!translation.empty()) out.translation = value_in<Vec3>(translation, time_s, side);
     if (!rotation.empty()) out.rotation = value_in<Quat>(rotation, time_s, side);
@@ -109,7 +109,7 @@ std::vector<Moment> PathMaker::moments(const std::vector<Index>& chain, Scales s
         // A rotation carries everything below it along arcs, which straight runs between keys would cut.
         bends |= !motions_[node].rotation.empty() && (node != chain.back() || scales == Scales::uneven);
     }
-    if (moments.empty()) moments.push_back({0, Side::after});
+    if (moments.empty()) moments.push_back({0, JumpSide::after});
     sort_moments(moments);
 
     const double frames = (moments.back().time_s - moments.front().time_s) * scene_.frames_per_second;

@@ -19,7 +19,7 @@ struct NodeMotion {
     std::vector<Key<Quat>> rotation;     ///< empty: constant
 
     [[nodiscard]] bool moves() const { return !translation.empty() || !rotation.empty(); }
-    [[nodiscard]] Transform at(double time_s, Side side) const;
+    [[nodiscard]] Transform at(double time_s, JumpSide side) const;
 };
 
 /// The motion of every node, in their order. Tracks that never leave their first value by more than the

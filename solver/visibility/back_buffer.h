@@ -35,7 +35,7 @@ class BackBuffer final : public VisibilityStrategy {
     std::vector<BlockEncounters> encounters_;  ///< by static block
     Index directions_ = 0;                     ///< whose encounters are known
     bool lamps_known_ = false;
-    Index shown_ = 0;  ///< directions that `visible` shows as they are now; the light lines, too, unless 0
+    Index shown_ = 0;     ///< directions that `visible` shows as they are now; the light lines, too, unless 0
     bool looked_ = true;  ///< along static lines, since changes were last asked for
     OwnLines own_;
     OwnLightLines own_light_;

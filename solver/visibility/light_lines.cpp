@@ -21,8 +21,9 @@ LightLines::Choice LightLines::choose(std::size_t block, Index k) const {
     // Systematic sampling: one shift a block, then equal steps through the lamps' power.
     const float shift = static_cast<float>(mixed(seed_, block) >> 40U) * 0x1p-24F;
     const Index repeats = lines_->blocks()[block].body == furniture ? 1 : repeats_;
-    const auto sample = static_cast<float>(k / repeats);
-    const float at = (sample + shift) * static_cast<float>(repeats) / static_cast<float>(lines_per_patch_);
+    const Index sample = k / repeats;
+    const float at = (static_cast<float>(sample) + shift) * static_cast<float>(repeats) /
+                     static_cast<float>(lines_per_patch_);
     const auto& cumulative = lamps_->cumulative_power;
     const auto found = std::upper_bound(cumulative.begin(), cumulative.end() - 1, at);
     const auto entry = static_cast<std::size_t>(found - cumulative.begin());

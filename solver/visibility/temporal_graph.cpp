@@ -32,12 +32,12 @@ void set_bounds(TemporalGraph& graph) {
 
 }  // namespace
 
-TemporalGraph make_temporal_graph(std::vector<std::vector<Adjacency>> adjacency) {
+TemporalGraph make_temporal_graph(std::vector<std::vector<Hiding>> adjacency) {
     using Kind = TemporalGraph::Event::Kind;
     TemporalGraph graph;
     graph.active.resize(adjacency.size());
     for (Index from = 0; from < adjacency.size(); ++from) {
-        for (const Adjacency& edge : adjacency[from]) {
+        for (const Hiding& edge : adjacency[from]) {
             const TemporalGraph::Event begins{edge.when.begin_s, from, edge.to, Kind::begins};
             if (edge.when.begin_s == -never)
                 set_active(graph, begins, Kind::begins);
@@ -56,10 +56,9 @@ TemporalGraph make_temporal_graph(std::vector<std::vector<Adjacency>> adjacency)
     return graph;
 }
 
-std::vector<std::vector<Adjacency>> find_adjacencies(std::span<const SpacetimeExtent> extents,
-                                                     const SpacetimeExtent& viewpoints,
-                                                     const TimeTree& times) {
-    std::vector<std::vector<Adjacency>> adjacency(extents.size());
+std::vector<std::vector<Hiding>> find_adjacencies(std::span<const SpacetimeExtent> extents,
+                                                  const SpacetimeExtent& viewpoints, const TimeTree& times) {
+    std::vector<std::vector<Hiding>> adjacency(extents.size());
     for (Index from = 0; from < extents.size(); ++from)
         for (Index to = 0; to < extents.size(); ++to)
             if (from != to)

@@ -8,7 +8,7 @@
 namespace afterglow {
 
 /// One object may hide another for some time.
-struct Adjacency {
+struct Hiding {
     Index to = 0;
     TimeSpan when;
 };
@@ -16,7 +16,7 @@ struct Adjacency {
 /// The temporal graph of depth priority of some objects as seen from some viewpoints: who may hide whom and
 /// when, and the levels at one time. One thread at a time.
 struct TemporalGraph {
-    std::vector<std::vector<Adjacency>> adjacency;  ///< by object, for all times
+    std::vector<std::vector<Hiding>> adjacency;  ///< by object, for all times
 
     double since_s = 0, until_s = 0;  ///< the levels below hold from `since_s` up to `until_s`
     Successors active;                ///< the adjacencies that hold now, in rising order
@@ -33,12 +33,11 @@ struct TemporalGraph {
 };
 
 /// A graph of given adjacencies at time −∞. Spans of the same two objects must not touch each other.
-TemporalGraph make_temporal_graph(std::vector<std::vector<Adjacency>> adjacency);
+TemporalGraph make_temporal_graph(std::vector<std::vector<Hiding>> adjacency);
 
 /// Who may hide whom of some moving extents as seen from a box of viewpoints.
-std::vector<std::vector<Adjacency>> find_adjacencies(std::span<const SpacetimeExtent> extents,
-                                                     const SpacetimeExtent& viewpoints,
-                                                     const TimeTree& times);
+std::vector<std::vector<Hiding>> find_adjacencies(std::span<const SpacetimeExtent> extents,
+                                                  const SpacetimeExtent& viewpoints, const TimeTree& times);
 
 /// What an update had to do.
 struct GraphWork {

@@ -93,9 +93,10 @@ TEST(Simplify, StaysWithinItsToleranceForAnyTrack) {
         for (const auto& key : keys) {
             // A time with several keys shows the first before it and the last from it on.
             const auto after = value_in<Vec3>(keys, key.time_s);
-            const auto before = value_in<Vec3>(keys, key.time_s, Side::before);
+            const auto before = value_in<Vec3>(keys, key.time_s, JumpSide::before);
             EXPECT_LE(glm::length(value_in<Vec3>(out, key.time_s) - after), 1.01 * tolerance);
-            EXPECT_LE(glm::length(value_in<Vec3>(out, key.time_s, Side::before) - before), 1.01 * tolerance);
+            EXPECT_LE(glm::length(value_in<Vec3>(out, key.time_s, JumpSide::before) - before),
+                      1.01 * tolerance);
         }
     }
 }

@@ -20,7 +20,7 @@ TEST(Track, ShowsTheLaterValueAtAJump) {
     const Track<float> jump{0, {{0.0, 1.0F}, {1.0, 1.0F}, {1.0, 5.0F}, {2.0, 5.0F}}};
     EXPECT_EQ(value_at(jump, 0.999), 1.0F);
     EXPECT_EQ(value_at(jump, 1.0), 5.0F);
-    EXPECT_EQ(value_in<float>(jump.keys, 1.0, Side::before), 1.0F);
+    EXPECT_EQ(value_in<float>(jump.keys, 1.0, JumpSide::before), 1.0F);
 }
 
 TEST(Track, GivesBackKeysBitForBit) {

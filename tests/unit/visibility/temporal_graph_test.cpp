@@ -24,7 +24,7 @@ DepthLevels levels_at(const TemporalGraph& graph, double time_s) {
     Successors active(graph.adjacency.size());
     for (Index from = 0; from < active.size(); ++from)
         for (Index to = 0; to < active.size(); ++to)
-            for (const Adjacency& edge : graph.adjacency[from])
+            for (const Hiding& edge : graph.adjacency[from])
                 if (edge.to == to && edge.when.contains(time_s)) active[from].push_back(to);
     return sort_by_levels(active);
 }
@@ -53,7 +53,7 @@ TEST(TemporalGraph, EqualsSortingFromScratchAfterEveryUpdate) {
     std::uint64_t sorted = 0, nodes = 0;
     for (int round = 0; round < 60; ++round) {
         const Index n = 2 + below(11, random);
-        std::vector<std::vector<Adjacency>> adjacency(n);
+        std::vector<std::vector<Hiding>> adjacency(n);
         for (Index from = 0; from < n; ++from)
             for (Index to = 0; to < n; ++to) {
                 if (from == to || unit(random) > 0.4) continue;
