@@ -13,6 +13,9 @@ namespace {
 constexpr std::size_t rows_per_chunk = 512;
 // Additions after which a row's sums are computed afresh, so that rounding never accumulates.
 constexpr std::uint8_t most_wear = 64;
+// Rounds go on to this share of what is good enough, so that the exact survey after them is seldom the last
+// but one.
+constexpr double near_enough = 0.8;
 
 bool is_any(const DoubleLanes& light) {
     return light.v[0] != 0 || light.v[1] != 0 || light.v[2] != 0;
@@ -174,8 +177,9 @@ class Pusher {
     bool push(const Survey& survey, const ResidualConfig& config, const Context& context) {
         bool moved = false, gathered = false;
         double largest = survey.largest;
-        for (int round = 0; round < config.rounds_between_surveys && !gathered && largest > survey.enough;
-             ++round) {
+        // What is covered will want a little more.
+        const double enough = near_enough * survey.enough;
+        for (int round = 0; round < config.rounds_between_surveys && !gathered && largest > enough; ++round) {
             const std::vector<Index> patches =
                 choose(std::max(config.push_share * largest, config.least_share * survey.enough));
             gathered = entries_of(patches) >= config.sweep_share * static_cast<double>(all_entries());
@@ -235,25 +239,32 @@ class Pusher {
             const Lanes change = take_up(i);
             is_pushed_[i] = 1;
             send(problem_.matrix.sight.columns, i, change.v, by_sight_);
-            send(problem_.matrix.light.columns, i, change.v, by_light_);
+            if (send(problem_.matrix.light.columns, i, change.v, by_light_)) lamps_changed_ = true;
         }
         return state_.pushes > before;
     }
 
-    static void send(const FormFactorColumns& columns, Index i, const Lanes::Vector& change,
+    /// Returns whether the column has any entries.
+    static bool send(const FormFactorColumns& columns, Index i, const Lanes::Vector& change,
                      std::span<Lanes> received) {
-        for (std::uint64_t e = columns.column_begin[i]; e < columns.column_begin[i + 1]; ++e)
-            received[columns.row[e]].v += columns.value[e] * change;
+        const std::uint64_t begin = columns.column_begin[i], end = columns.column_begin[i + 1];
+        for (std::uint64_t e = begin; e < end; ++e) received[columns.row[e]].v += columns.value[e] * change;
+        return begin < end;
     }
 
     /// Adds what is on its way to the sums.
     void settle(const Context& context) {
         context.for_chunks(problem_.matrix.rows(), rows_per_chunk, [&](std::size_t first, std::size_t last) {
             for (std::size_t row = first; row < last; ++row) {
-                DoubleLanes sight = to_double(by_sight_[row]), light = to_double(by_light_[row]);
-                by_sight_[row] = by_light_[row] = {};
+                DoubleLanes sight = to_double(by_sight_[row]), light;
+                by_sight_[row] = {};
                 cover(problem_.matrix.sight.covered[row], sight);
-                cover(problem_.matrix.light.covered[row], light);
+                // Lamps hardly reflect: mostly nothing has come from them.
+                if (lamps_changed_) {
+                    light = to_double(by_light_[row]);
+                    by_light_[row] = {};
+                    cover(problem_.matrix.light.covered[row], light);
+                }
                 if (!is_any(sight) && !is_any(light)) continue;
                 state_.by_sight[row].v += sight.v;
                 state_.by_light[row].v += light.v;
@@ -262,6 +273,7 @@ class Pusher {
         });
         std::fill(change_.begin(), change_.end(), DoubleLanes{});
         std::fill(is_pushed_.begin(), is_pushed_.end(), std::uint8_t{0});
+        lamps_changed_ = false;
         gather_whole(state_, problem_, context);
     }
 
@@ -281,6 +293,7 @@ class Pusher {
     std::vector<std::uint8_t>& is_pushed_;
     std::vector<Lanes>& by_sight_;
     std::vector<Lanes>& by_light_;
+    bool lamps_changed_ = false;  // something is on its way to the light layer
 };
 
 void check(const ResidualProblem& problem, std::size_t state_size) {

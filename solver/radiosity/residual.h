@@ -31,7 +31,7 @@ struct ResidualConfig {
     /// Nothing is pushed whose residual is below this share of what would be good enough, in (0, 1].
     double least_share = 0.5;
     /// Rounds made before what actors cover hears of them and the residual is computed exactly, 1 or more.
-    int rounds_between_surveys = 8;
+    int rounds_between_surveys = 16;
     /// A round whose columns hold at least this share of all entries is made as a sweep: all patches are
     /// pushed, and the rows gather them in parallel.
     double sweep_share = 0.25;
