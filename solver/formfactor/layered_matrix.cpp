@@ -1,7 +1,6 @@
 #include "solver/formfactor/layered_matrix.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 #include "solver/base/error.h"

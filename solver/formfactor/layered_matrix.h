@@ -45,12 +45,6 @@ struct RowChanges {
     std::uint64_t lines = 0;  ///< sight lines that see something else, whether or not their columns differ
 };
 
-/// What the sight lines of a patch meet.
-struct LineTally {
-    Index outside = 0, buried = 0, on_lamps = 0, on_others = 0;
-    [[nodiscard]] Index valid() const { return outside + on_lamps + on_others; }
-};
-
 /// F of one moment as layers, so that the next moment costs what changes: static patches keep rows over which
 /// actors lie; rows of moving patches, and of those that lamps fill the view of, are compiled whole. In a
 /// scene with a lamp that moves all rows are: each of them changes at every frame. Meant to be read;

@@ -30,12 +30,6 @@ struct Part {
     }
 };
 
-/// What a patch's sight lines meet.
-struct Tally {
-    Index outside = 0, buried = 0, on_lamps = 0, on_others = 0;
-    [[nodiscard]] Index valid() const { return outside + on_lamps + on_others; }
-};
-
 class RowCompiler {
   public:
     RowCompiler(const PatchMesh& mesh, const SightLines& lines, const LightLines& light_lines,
@@ -65,9 +59,9 @@ class RowCompiler {
   private:
     /// Counts lines by target into the row, all but those that light lines count.
     template <class ByLightLines>
-    Tally count_lines(const PatchBlock& block, Index lane, const ByLightLines& by_light_lines,
-                      RowCounter& row) const {
-        Tally tally;
+    LineTally count_lines(const PatchBlock& block, Index lane, const ByLightLines& by_light_lines,
+                          RowCounter& row) const {
+        LineTally tally;
         for (Index d = 0; d < seen_.directions; ++d) {
             const Index target = seen_.visible[lines_.line(block, d, lane)];
             if (target == sees_nothing) {
@@ -92,7 +86,7 @@ class RowCompiler {
             const Index lamp = lamps_.lamp_of_patch[target];
             return lamp != no_index && near[lamp] == 0;
         };
-        Tally tally = count_lines(block, lane, by_light_lines, row);
+        LineTally tally = count_lines(block, lane, by_light_lines, row);
         out_.valid_share[place] = static_cast<float>(tally.valid()) / static_cast<float>(seen_.directions);
         if (tally.valid() == 0) return;
 

@@ -15,6 +15,12 @@ struct SeenLines {
     std::span<const float> light_contribution;  ///< by light line, 0 where blocked
 };
 
+/// What the sight lines of a patch meet.
+struct LineTally {
+    Index outside = 0, buried = 0, on_lamps = 0, on_others = 0;
+    [[nodiscard]] Index valid() const { return outside + on_lamps + on_others; }
+};
+
 /// Form factors of all patches and what else their lines tell.
 struct FormFactors {
     FormFactorMatrix matrix;

@@ -105,7 +105,7 @@ class Surveyor {
         return survey;
     }
 
-    /// The residuals alone, and the largest of them, while `received` is still on its way to the sums.
+    /// The residuals alone, and the largest of them, while this is still on its way to the layers' sums.
     float look_again(std::span<const Lanes> by_sight, std::span<const Lanes> by_light,
                      const Context& context) {
         std::vector<float> largest((whole_.size() + rows_per_chunk - 1) / rows_per_chunk);
@@ -175,17 +175,19 @@ class Pusher {
 
     /// Returns whether any radiosity changed at all.
     bool push(const Survey& survey, const ResidualConfig& config, const Context& context) {
-        bool moved = false, gathered = false;
+        bool moved = false;
         double largest = survey.largest;
         // What is covered will want a little more.
         const double enough = near_enough * survey.enough;
-        for (int round = 0; round < config.rounds_between_surveys && !gathered && largest > enough; ++round) {
+        for (int round = 0; round < config.rounds_between_surveys && largest > enough; ++round) {
             const std::vector<Index> patches =
                 choose(std::max(config.push_share * largest, config.least_share * survey.enough));
-            gathered = entries_of(patches) >= config.sweep_share * static_cast<double>(all_entries());
-            if (gathered && round > 0) break;
+            const bool sweeps =
+                entries_of(patches) >= config.sweep_share * static_cast<double>(all_entries());
+            // A sweep starts from residuals that are exact.
+            if (sweeps && round > 0) break;
             ++state_.rounds;
-            if (gathered) return sweep(context);
+            if (sweeps) return sweep(context);
             if (!push_along_columns(patches)) break;
             moved = true;
             largest = surveyor_.look_again(by_sight_, by_light_, context);
