@@ -10,13 +10,13 @@
 #include <unistd.h>
 #include <variant>
 
-#include "service/console.h"
-#include "service/interrupt.h"
-#include "service/process_age.h"
-#include "service/render_command.h"
-#include "service/render_options.h"
-#include "service/serve_command.h"
-#include "service/serve_options.h"
+#include "service/base/console.h"
+#include "service/commands/interrupt.h"
+#include "service/commands/process_age.h"
+#include "service/commands/render_command.h"
+#include "service/commands/render_options.h"
+#include "service/commands/serve_command.h"
+#include "service/commands/serve_options.h"
 #include "solver/base/error.h"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "service/console.h"
+#include "service/base/console.h"
 
 #include <gtest/gtest.h>
 

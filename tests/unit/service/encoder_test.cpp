@@ -1,4 +1,4 @@
-#include "service/encoder.h"
+#include "service/work/encoder.h"
 
 #include <future>
 #include <memory>

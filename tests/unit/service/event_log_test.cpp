@@ -1,4 +1,4 @@
-#include "service/event_log.h"
+#include "service/jobs/event_log.h"
 
 #include <map>
 #include <random>

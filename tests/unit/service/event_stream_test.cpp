@@ -1,4 +1,4 @@
-#include "service/event_stream.h"
+#include "service/api/event_stream.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "service/job_run.h"
+#include "service/work/job_run.h"
 #include "solver/base/error.h"
 
 // Stand-ins for the solver with which tests of the service decide what happens when.

@@ -1,4 +1,4 @@
-#include "service/frame_range.h"
+#include "service/base/frame_range.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "service/frame_store.h"
+#include "service/store/frame_store.h"
 
 #include <gtest/gtest.h>
 

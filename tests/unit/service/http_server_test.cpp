@@ -1,4 +1,4 @@
-#include "service/http_server.h"
+#include "service/http/http_server.h"
 
 #include <array>
 #include <memory>
@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <httplib.h>
 
-#include "service/service.h"
+#include "service/api/service.h"
 #include "solver/base/error.h"
 #include "tests/unit/service/fake_solver.h"
 

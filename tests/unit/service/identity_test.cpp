@@ -1,4 +1,4 @@
-#include "service/identity.h"
+#include "service/base/identity.h"
 
 #include <algorithm>
 #include <set>

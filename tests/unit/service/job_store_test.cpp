@@ -1,4 +1,4 @@
-#include "service/job_store.h"
+#include "service/store/job_store.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "service/job.h"
+#include "service/jobs/job.h"
 
 #include <array>
 

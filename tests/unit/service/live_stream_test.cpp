@@ -1,4 +1,4 @@
-#include "service/live_stream.h"
+#include "service/api/live_stream.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "service/option_values.h"
+#include "service/base/option_values.h"
 
 #include <functional>
 #include <initializer_list>

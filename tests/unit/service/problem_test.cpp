@@ -1,4 +1,4 @@
-#include "service/problem.h"
+#include "service/base/problem.h"
 
 #include <new>
 

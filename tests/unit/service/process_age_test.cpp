@@ -1,4 +1,4 @@
-#include "service/process_age.h"
+#include "service/commands/process_age.h"
 
 #include <ctime>
 

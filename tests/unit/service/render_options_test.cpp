@@ -1,4 +1,4 @@
-#include "service/render_options.h"
+#include "service/commands/render_options.h"
 
 #include <cstdlib>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "service/report.h"
+#include "service/commands/report.h"
 
 #include <filesystem>
 #include <iterator>

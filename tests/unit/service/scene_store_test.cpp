@@ -1,4 +1,4 @@
-#include "service/scene_store.h"
+#include "service/store/scene_store.h"
 
 #include <filesystem>
 

@@ -1,4 +1,4 @@
-#include "service/schedule.h"
+#include "service/work/schedule.h"
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-#include "service/serve_options.h"
+#include "service/commands/serve_options.h"
 
 #include <string>
 #include <vector>

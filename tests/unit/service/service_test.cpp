@@ -1,4 +1,4 @@
-#include "service/service.h"
+#include "service/api/service.h"
 
 #include <algorithm>
 

@@ -1,11 +1,11 @@
-#include "service/settings.h"
+#include "service/jobs/settings.h"
 
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "service/job_json.h"
+#include "service/jobs/job_json.h"
 
 namespace afterglow {
 namespace {

@@ -1,4 +1,4 @@
-#include "service/timestamp.h"
+#include "service/base/timestamp.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "service/worker.h"
+#include "service/work/worker.h"
 
 #include <algorithm>
 #include <map>
@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "service/encoder.h"
+#include "service/work/encoder.h"
 #include "solver/base/file.h"
 #include "tests/unit/service/fake_solver.h"
 

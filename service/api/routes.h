@@ -1,0 +1,34 @@
+#pragma once
+
+#include "service/base/limits.h"
+#include "service/http/router.h"
+#include "service/store/frame_store.h"
+#include "service/store/job_store.h"
+#include "service/store/scene_store.h"
+#include "service/work/worker.h"
+
+namespace afterglow {
+
+/// What the routes work on; everything must outlive the router.
+struct RouteContext {
+    SceneStore& scenes;
+    JobStore& jobs;
+    FrameStore& frames;
+    Worker& worker;
+    Limits limits;
+};
+
+/// Each adds the routes of http-api.md that its name says.
+void add_scene_routes(Router& router, const RouteContext& context);
+void add_job_routes(Router& router, const RouteContext& context);
+void add_frame_routes(Router& router, const RouteContext& context);
+void add_stream_routes(Router& router, const RouteContext& context);
+
+/// The job of an address, or a 404 that names it.
+Job job_at(const JobStore& jobs, const std::string& id);
+
+/// A request body that must be JSON. Errors: 415 for another content type, 413 past `max_bytes`, 400 for text
+/// that is no JSON.
+Json json_body(const Request& request, std::size_t max_bytes);
+
+}  // namespace afterglow

@@ -1,0 +1,60 @@
+#include "service/api/routes.h"
+#include "service/base/option_values.h"
+
+namespace afterglow {
+
+namespace {
+
+SceneFormat format_of_body(const Request& request) {
+    const std::string type = request.media_type();
+    if (type == "model/gltf-binary") return SceneFormat::glb;
+    if (type == "model/gltf+json") return SceneFormat::gltf;
+    if (type == "model/obj") return SceneFormat::obj;
+    if (type == "application/json") return SceneFormat::json;
+    throw ProblemError({415, "unsupported_media_type",
+                        "scenes are model/gltf-binary, model/gltf+json, model/obj or application/json",
+                        "Content-Type"});
+}
+
+UpAxis read_up(const std::string& text) {
+    if (text == "y") return UpAxis::y;
+    if (text == "z") return UpAxis::z;
+    throw Error(ErrorKind::invalid_input, "request?obj_up", "expected y or z");
+}
+
+SceneUpload read_upload(const Request& request) {
+    for (const auto& [name, value] : request.query)
+        if (name != "name" && name != "obj_unit_m" && name != "obj_up")
+            throw Error(ErrorKind::invalid_input, "request?" + name, "unknown parameter");
+    SceneUpload upload;
+    upload.format = format_of_body(request);
+    upload.name = request.parameter("name");
+    if (upload.name.empty()) upload.name = "scene";
+    if (upload.name.size() > 200)
+        throw Error(ErrorKind::invalid_input, "request?name", "longer than 200 bytes");
+    if (const auto unit = request.parameter("obj_unit_m"); !unit.empty())
+        upload.load.obj_unit_m = decimal_number("request?obj_unit_m", unit, 1e-6, 1e6);
+    if (const auto up = request.parameter("obj_up"); !up.empty()) upload.load.obj_up = read_up(up);
+    return upload;
+}
+
+Reply post_scene(const RouteContext& context, const Request& request) {
+    const auto added = context.scenes.add(request.body, read_upload(request));
+    return json_reply(to_json(added.scene), added.outcome == SceneStore::Added::Outcome::created ? 201 : 200);
+}
+
+Reply post_paths(const RouteContext& context, const Request& request) {
+    json_body(request, context.limits.document_bytes);
+    return json_reply({{"id", context.scenes.add_paths(request.body)}}, 201);
+}
+
+}  // namespace
+
+void add_scene_routes(Router& router, const RouteContext& context) {
+    router.add("POST", "/v1/scenes",
+               [context](const Request& request, const PathValues&) { return post_scene(context, request); });
+    router.add("POST", "/v1/paths",
+               [context](const Request& request, const PathValues&) { return post_paths(context, request); });
+}
+
+}  // namespace afterglow

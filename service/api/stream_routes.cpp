@@ -1,0 +1,78 @@
+#include <limits>
+
+#include "service/api/event_stream.h"
+#include "service/api/live_stream.h"
+#include "service/api/routes.h"
+#include "service/base/option_values.h"
+
+namespace afterglow {
+
+namespace {
+
+/// The id the client has reached; nothing where it names none.
+std::optional<std::uint64_t> last_event_id(const Request& request) {
+    std::string text = request.header("last-event-id");
+    if (text.empty()) text = request.parameter("last_event_id");
+    if (text.empty()) return std::nullopt;
+    return static_cast<std::uint64_t>(
+        whole_number("Last-Event-ID", text, 0, std::numeric_limits<std::int64_t>::max()));
+}
+
+/// The id from which a reader without one goes on after its snapshot: what is new from here, or the end again
+/// where all is over, since every stream of an ended job ends with `end`.
+std::uint64_t present(const EventLog& log) {
+    const auto end = log.end();
+    return end ? end->id - 1 : log.last_id();
+}
+
+std::string snapshot_text(const RouteContext& context, const std::string& id, std::uint64_t after) {
+    Json snapshot = to_json(job_at(context.jobs, id));
+    snapshot["frames"] = Json::array();
+    for (const FrameInfo& info : context.frames.newest(id))
+        snapshot["frames"].push_back(frame_json(id, info));
+    return sse_text(after, "snapshot", dump(snapshot));
+}
+
+Reply get_events(const RouteContext& context, const Request& request, const std::string& id) {
+    job_at(context.jobs, id);
+    const auto log = context.jobs.events(id);
+    const auto reached = last_event_id(request);
+    std::uint64_t after = 0;
+    std::string opening = ": events\n\n";  // lets the reader know at once that it is connected
+    if (reached) {
+        after = *reached;
+        const auto batch = log->wait_after(after, std::chrono::milliseconds(0));
+        if (batch.status == EventLog::Status::too_old || after > log->last_id())
+            throw ProblemError({410, "gone", "events from there are kept no longer", "Last-Event-ID"});
+    } else {
+        // The id first: an event between the two is then told twice, never lost.
+        after = present(*log);
+        opening = snapshot_text(context, id, after);
+    }
+    Reply reply;
+    reply.content_type = "text/event-stream";
+    reply.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
+    reply.stream = std::make_shared<EventStream>(log, after, std::move(opening));
+    return reply;
+}
+
+Reply get_live(const RouteContext& context, const std::string& id) {
+    job_at(context.jobs, id);
+    Reply reply;
+    reply.content_type = live_content_type;
+    reply.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
+    reply.stream = std::make_shared<LiveStream>(id, context.jobs.events(id), context.frames);
+    return reply;
+}
+
+}  // namespace
+
+void add_stream_routes(Router& router, const RouteContext& context) {
+    router.add("GET", "/v1/jobs/{}/events", [context](const Request& request, const PathValues& values) {
+        return get_events(context, request, values[0]);
+    });
+    router.add("GET", "/v1/jobs/{}/live",
+               [context](const Request&, const PathValues& values) { return get_live(context, values[0]); });
+}
+
+}  // namespace afterglow

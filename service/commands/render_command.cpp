@@ -1,0 +1,113 @@
+#include "service/commands/render_command.h"
+
+#include <array>
+#include <cstdio>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "service/base/console.h"
+#include "service/commands/report.h"
+#include "solver/base/file.h"
+#include "solver/image/frame_files.h"
+#include "solver/sequence/sequence.h"
+
+namespace afterglow {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// Fails where the folder of the frames cannot be what it must be, before any work.
+void require_possible_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::path existing = fs::absolute(folder, error);
+    while (!fs::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
+    if (!fs::is_directory(existing, error))
+        throw Error(ErrorKind::invalid_input, "--out", existing.string() + " is not a folder");
+}
+
+World load_world(const RenderOptions& options) {
+    try {
+        Scene scene = load_scene(options.scene, options.load);
+        if (options.paths)
+            apply_paths(scene, read_file(*options.paths), options.paths->string(), options.load);
+        return assemble(scene, options.load.collinear_tolerance_m, options.load.collinear_tolerance_rad);
+    } catch (const Error& e) {
+        // A file that cannot be read is bad input, unlike one that cannot be written.
+        if (e.kind() == ErrorKind::io) throw Error(ErrorKind::invalid_input, e.place(), e.message());
+        throw;
+    }
+}
+
+std::string finished_line(const FrameStatistics& frame, const FrameRange& range) {
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(), "frame %d (%d of %d): %.2f s, solver error at most %.2g %%",
+                  frame.frame, frame.frame - range.first + 1, range.last - range.first + 1,
+                  frame.total.count() / 1000, 100 * frame.error_bound);
+    std::string line = text.data();
+    if (frame.picture_error) {
+        std::snprintf(text.data(), text.size(), ", picture error about %.2g %%", 100 * *frame.picture_error);
+        line += text.data();
+    }
+    return line;
+}
+
+/// One frame, solved and written. The static pass runs within the first frame but is not counted as its time.
+FrameStatistics render_frame(SequenceState& state, int frame, const fs::path& out, const Context& context) {
+    const auto begin = Clock::now();
+    const Milliseconds outside_before = state.statistics().outside_frames();
+    Revision final_picture;
+    const auto keep_final = [&](const Revision& revision) {
+        if (revision.final) final_picture = revision;
+    };
+    FrameStatistics statistics = step(state, frame, keep_final, context);
+    write_frame(out, frame, final_picture.radiance, final_picture.srgb);
+    statistics.total = Clock::now() - begin - (state.statistics().outside_frames() - outside_before);
+    return statistics;
+}
+
+}  // namespace
+
+void render_command(const RenderOptions& options, const std::stop_token& stop, Clock::time_point started) {
+    const bool quiet = options.progress == RenderOptions::Progress::hidden;
+    Console console(quiet ? Console::Shows::warnings_only : Console::Shows::progress);
+    require_possible_folder(options.out);
+    if (options.report) require_writable_file(*options.report);
+
+    World world = load_world(options);
+    for (const Warning& warning : world.warnings) console.warning(warning);
+    const FrameRange range = options.frames.value_or(FrameRange{0, last_frame_of(world, options.sequence)});
+    Report report;
+    report.scene = options.scene.string();
+    const auto loaded = Clock::now();
+    report.load = loaded - started;
+
+    std::string subject = "preparing";
+    const Context context(options.threads, stop, [&](const Progress& p) { console.progress(subject, p); });
+    const double steps = range.last - range.first + 2;  // preparing counts as a frame
+    SequenceConfig config = options.sequence;
+    config.frames_expected = range.last - range.first + 1;
+    SequenceState state = make_state(std::move(world), config, context.part(0, 1 / steps));
+    report.static_pass = Clock::now() - loaded;
+    if (const SequenceStatistics& chosen = state.statistics(); !chosen.method_reason.empty())
+        console.line("method " + chosen.method + ": " + chosen.method_reason);
+    std::size_t warnings_shown = 0;
+    for (int frame = range.first; frame <= range.last; ++frame) {
+        subject = "frame " + std::to_string(frame);
+        const double done = frame - range.first + 1;
+        const Context part = context.part(done / steps, (done + 1) / steps);
+        report.frames.push_back(render_frame(state, frame, options.out, part));
+        for (; warnings_shown < state.warnings().size(); ++warnings_shown)
+            console.warning(state.warnings()[warnings_shown]);
+        console.line(finished_line(report.frames.back(), range));
+    }
+
+    report.static_pass += state.statistics().static_pass;
+    report.sequence = state.statistics();
+    if (options.report) write_file(*options.report, to_json(report, peak_memory_mb()).dump(2) + "\n");
+    console.line("frames are in " + options.out.string());
+}
+
+}  // namespace afterglow

@@ -1,0 +1,73 @@
+#include "service/commands/serve_options.h"
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "service/base/option_values.h"
+#include "solver/base/error.h"
+
+namespace afterglow {
+
+namespace {
+
+using Text = std::optional<std::string>;
+
+/// The options as they were typed; absent where not given.
+struct Typed {
+    Text listen, data, threads, resident_jobs, connections;
+    bool access_log = false;
+};
+
+void declare_options(CLI::App& app, Typed& typed) {
+    app.add_option("--listen", typed.listen,
+                   "ADDRESS:PORT to listen on; port 0 takes a free one [127.0.0.1:8080]");
+    app.add_option("--data", typed.data, "Folder for uploads, pictures and cache [a temporary one]");
+    app.add_option("--threads", typed.threads, "Threads to solve with [one a core]");
+    app.add_option("--resident-jobs", typed.resident_jobs, "Jobs whose state is in memory at a time [4]");
+    app.add_option("--connections", typed.connections, "Connections answered at a time [64]");
+    app.add_flag("--access-log", typed.access_log, "Tell each request on standard error");
+}
+
+/// "127.0.0.1:8080", "host:8080" or "[::1]:8080".
+void set_listen(ServeConfig& config, const std::string& text) {
+    const auto colon = text.rfind(':');
+    std::string address = text.substr(0, colon);
+    const bool bracketed = address.starts_with('[') && address.ends_with(']');
+    if (bracketed) address = address.substr(1, address.size() - 2);
+    // Without its brackets the end of an IPv6 address cannot be told from a port.
+    const bool ambiguous = !bracketed && address.find(':') != std::string::npos;
+    if (colon == std::string::npos || address.empty() || ambiguous)
+        throw Error(ErrorKind::invalid_input, "--listen",
+                    "expected ADDRESS:PORT such as 127.0.0.1:8080 or [::1]:8080, found \"" + text + "\"");
+    config.address = address;
+    config.port = static_cast<int>(whole_number("--listen", text.substr(colon + 1), 0, 65535));
+}
+
+}  // namespace
+
+std::variant<ServeConfig, HelpText> read_serve_options(std::span<const char* const> arguments) {
+    CLI::App app("Offers rendering over HTTP until it is interrupted.", "afterglowd serve");
+    Typed typed;
+    declare_options(app, typed);
+    if (const auto help = parse_arguments(app, arguments)) return *help;
+
+    ServeConfig config;
+    if (typed.listen) set_listen(config, *typed.listen);
+    if (typed.data) {
+        if (typed.data->empty()) throw Error(ErrorKind::invalid_input, "--data", "the path is empty");
+        config.data_folder = *typed.data;
+    }
+    if (typed.threads) config.threads = static_cast<int>(whole_number("--threads", *typed.threads, 1, 1024));
+    if (typed.resident_jobs)
+        config.max_resident =
+            static_cast<std::size_t>(whole_number("--resident-jobs", *typed.resident_jobs, 1, 1024));
+    if (typed.connections)
+        config.max_connections =
+            static_cast<std::size_t>(whole_number("--connections", *typed.connections, 1, 10000));
+    if (typed.access_log) config.access_log = AccessLog::on;
+    return config;
+}
+
+}  // namespace afterglow

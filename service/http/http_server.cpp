@@ -1,0 +1,253 @@
+#include "service/http/http_server.h"
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <cstring>
+#include <iostream>
+#include <thread>
+#include <utility>
+
+#include <httplib.h>
+
+#include "service/base/console.h"
+#include "service/http/http_message.h"
+#include "solver/base/error.h"
+
+namespace afterglow {
+
+namespace {
+
+// A reader that takes nothing for this long is given up. This and the next are also how long a stop may take.
+constexpr int write_timeout_s = 8;
+constexpr int keep_alive_timeout_s = 2;
+constexpr int keep_alive_requests = 1000;
+// What open streams get at a stop to send their last piece; the library would cut them off.
+constexpr std::chrono::seconds stop_grace{2};
+
+/// The library's default also sets SO_REUSEPORT, with which two servers share a port and each gets some of
+/// the requests; here the second one must fail.
+void set_socket_options(socket_t socket) {
+    const int yes = 1;
+    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+}
+
+bool has_body(const httplib::Request& request) {
+    // Without either header a body has no end but the connection's, so there is none.
+    return request.has_header("Content-Length") || request.has_header("Transfer-Encoding");
+}
+
+bool is_method_with_body(const std::string& method) {
+    return method == "POST" || method == "PUT" || method == "PATCH" || method == "DELETE";
+}
+
+Request to_request(const httplib::Request& from) {
+    Request request;
+    request.method = from.method;
+    request.path = from.path;
+    for (const auto& [name, value] : from.params) request.query.emplace(name, value);
+    for (const auto& [name, value] : from.headers) {
+        std::string lower = name;
+        std::transform(lower.begin(), lower.end(), lower.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        request.headers.emplace(std::move(lower), value);
+    }
+    return request;
+}
+
+/// Held by every open stream, so that its users are the open streams.
+using StreamToken = std::shared_ptr<const char>;
+
+httplib::ContentProviderWithoutLength provider_of(std::shared_ptr<ReplyStream> stream, StreamToken token) {
+    return [stream = std::move(stream), token = std::move(token)](std::size_t, httplib::DataSink& sink) {
+        try {
+            if (!sink.is_writable()) return false;
+            const Piece piece = stream->next();
+            if (!piece.bytes.empty() && !sink.write(piece.bytes.data(), piece.bytes.size())) return false;
+            if (piece.then == Piece::Then::end) sink.done();
+            return true;
+        } catch (...) {
+            return false;  // the connection ends, which tells the reader
+        }
+    };
+}
+
+void send(Reply reply, const StreamToken& token, httplib::Response& to) {
+    to.status = reply.status;
+    for (const auto& [name, value] : reply.headers) to.set_header(name, value);
+    if (reply.stream) {
+        to.set_chunked_content_provider(reply.content_type, provider_of(std::move(reply.stream), token));
+        return;
+    }
+    if (!reply.content_type.empty()) to.set_header("Content-Type", reply.content_type);
+    to.body = std::move(reply.body);
+}
+
+std::string code_of_status(int status) {
+    return status == 413 ? "too_large" : status == 415 ? "unsupported_media_type" : "bad_request";
+}
+
+/// A body received in parts, up to a limit. Past it the rest is taken and thrown away, so that the client
+/// gets to read the reply; past twice the limit nothing more is taken.
+class Body {
+  public:
+    explicit Body(std::size_t limit) : limit_(limit) {}
+
+    bool take(const char* data, std::size_t size) {
+        seen_ += size;
+        if (seen_ <= limit_)
+            bytes_.append(data, size);
+        else
+            bytes_ = std::string();
+        return seen_ <= 2 * limit_;
+    }
+    [[nodiscard]] bool is_too_large() const { return seen_ > limit_; }
+    std::string take_bytes() { return std::move(bytes_); }
+
+  private:
+    std::size_t limit_;
+    std::size_t seen_ = 0;
+    std::string bytes_;
+};
+
+}  // namespace
+
+class HttpServer::Parts {
+  public:
+    Parts(const Router& router, HttpServerConfig config) : router_(router), config_(std::move(config)) {
+        set_up_connections();
+        set_up_handlers();
+    }
+    ~Parts() { stop(); }
+    Parts(const Parts&) = delete;
+    Parts& operator=(const Parts&) = delete;
+
+    int start() {
+        const int port = config_.port == 0 ? server_.bind_to_any_port(config_.address)
+                         : server_.bind_to_port(config_.address, config_.port) ? config_.port
+                                                                               : -1;
+        if (port < 0)
+            throw Error(ErrorKind::io, config_.address + ":" + std::to_string(config_.port),
+                        "this address cannot be listened on; another program may have it");
+        listener_ = std::thread([this] {
+            server_.listen_after_bind();
+            has_ended_ = true;
+        });
+        // A stop before the listener runs would be lost.
+        while (!server_.is_running() && !has_ended_)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        return port;
+    }
+
+    void stop() {
+        const auto give_up = std::chrono::steady_clock::now() + stop_grace;
+        while (token_.use_count() > 1 && std::chrono::steady_clock::now() < give_up)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        server_.stop();
+        if (listener_.joinable()) listener_.join();
+    }
+
+    [[nodiscard]] bool is_running() const { return server_.is_running() && !has_ended_; }
+
+  private:
+    void set_up_connections() {
+        server_.set_socket_options(set_socket_options);
+        server_.set_tcp_nodelay(true);  // events are small and must not wait for each other
+        server_.set_write_timeout(write_timeout_s);
+        server_.set_keep_alive_timeout(keep_alive_timeout_s);
+        server_.set_keep_alive_max_count(keep_alive_requests);
+        server_.set_payload_max_length(config_.max_body_bytes);
+        server_.new_task_queue = [threads = config_.max_connections] {
+            return new httplib::ThreadPool(threads);
+        };
+    }
+
+    void set_up_handlers() {
+        server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+            ignore_ranges(request);
+            if (is_method_with_body(request.method)) return httplib::Server::HandlerResponse::Unhandled;
+            answer(to_request(request), response);
+            return httplib::Server::HandlerResponse::Handled;
+        });
+        const auto receive = [this](const httplib::Request& request, httplib::Response& response,
+                                    const httplib::ContentReader& reader) {
+            receive_body(request, response, reader);
+        };
+        server_.Post(any_path, receive);
+        server_.Put(any_path, receive);
+        server_.Patch(any_path, receive);
+        server_.Delete(any_path, receive);
+        // What the library refuses by itself is told in the same form as everything else.
+        server_.set_error_handler([](const httplib::Request&, httplib::Response& response) {
+            if (!response.body.empty()) return;
+            const std::string detail(title_of(response.status));
+            send(problem_reply({response.status, code_of_status(response.status), detail, ""}), {}, response);
+        });
+        server_.set_exception_handler(
+            [](const httplib::Request&, httplib::Response& response, const std::exception_ptr& caught) {
+                send(problem_reply(problem_of(caught)), {}, response);
+            });
+        if (config_.access_log == AccessLog::on)
+            server_.set_logger([](const httplib::Request& request, const httplib::Response& response) {
+                std::cerr << one_line(request.method + " " + request.target) + " " +
+                                 std::to_string(response.status) + "\n";
+            });
+    }
+
+    /// Pictures and problems are sent whole: the library would cut a reply of any status to the range asked
+    /// for.
+    static void ignore_ranges(const httplib::Request& request) {
+        const_cast<httplib::Request&>(request).ranges.clear();
+    }
+
+    void answer(const Request& request, httplib::Response& response) const {
+        send(router_.handle(request), token_, response);
+    }
+
+    void receive_body(const httplib::Request& from, httplib::Response& response,
+                      const httplib::ContentReader& reader) const {
+        Request request = to_request(from);
+        if (has_body(from)) {
+            Body body(config_.max_body_bytes);
+            const auto take = [&](const char* data, std::size_t size) { return body.take(data, size); };
+            // Forms are no part of the interface, but must be read to their end before they are refused.
+            const bool complete = from.is_multipart_form_data()
+                                      ? reader([](const httplib::MultipartFormData&) { return true; }, take)
+                                      : reader(take);
+            if (body.is_too_large()) response.status = 413;
+            if (!complete || body.is_too_large()) {
+                const int status = response.status >= 400 ? response.status : 400;
+                send(problem_reply({status, code_of_status(status), "the body could not be taken", "body"}),
+                     {}, response);
+                return;
+            }
+            request.body = body.take_bytes();
+        }
+        answer(request, response);
+    }
+
+    static constexpr const char* any_path = R"([\s\S]*)";
+
+    const Router& router_;
+    HttpServerConfig config_;
+    StreamToken token_ = std::make_shared<const char>();
+    httplib::Server server_;
+    std::thread listener_;
+    std::atomic<bool> has_ended_ = false;
+};
+
+HttpServer::HttpServer(const Router& router, HttpServerConfig config)
+    : parts_(std::make_unique<Parts>(router, std::move(config))) {}
+HttpServer::~HttpServer() = default;
+
+int HttpServer::start() {
+    return parts_->start();
+}
+void HttpServer::stop() {
+    parts_->stop();
+}
+bool HttpServer::is_running() const {
+    return parts_->is_running();
+}
+
+}  // namespace afterglow

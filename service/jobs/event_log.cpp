@@ -1,0 +1,101 @@
+#include "service/jobs/event_log.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace afterglow {
+
+std::string_view name_of(EventKind kind) {
+    switch (kind) {
+        case EventKind::job:
+            return "job";
+        case EventKind::progress:
+            return "progress";
+        case EventKind::image:
+        case EventKind::final_image:
+            return "image";
+        case EventKind::warning:
+            return "warning";
+        case EventKind::error:
+            return "error";
+        case EventKind::end:
+            return "end";
+    }
+    return "";
+}
+
+EventLog::EventLog(EventLogConfig config) : config_(config) {}
+
+void EventLog::append(EventKind kind, std::string data, int frame) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (closed_) return;
+        const std::uint64_t id = ++last_id_;
+        supersede(id, kind, frame);
+        events_.emplace(id, Event{id, kind, frame, std::move(data)});
+        make_room();
+        closed_ = kind == EventKind::end;
+    }
+    changed_.notify_all();
+}
+
+void EventLog::close() {
+    {
+        const std::lock_guard lock(mutex_);
+        closed_ = true;
+    }
+    changed_.notify_all();
+}
+
+/// Notes what the event `id` makes superfluous.
+void EventLog::supersede(std::uint64_t id, EventKind kind, int frame) {
+    if (kind == EventKind::progress) {
+        events_.erase(progress_id_);
+        progress_id_ = id;
+    } else if (kind == EventKind::image) {
+        preliminary_[frame].push_back(id);
+    } else if (kind == EventKind::final_image) {
+        const auto earlier = preliminary_.extract(frame);
+        if (!earlier.empty())
+            superseded_.insert(superseded_.end(), earlier.mapped().begin(), earlier.mapped().end());
+    }
+}
+
+void EventLog::make_room() {
+    while (events_.size() > config_.capacity) {
+        if (!superseded_.empty()) {
+            // It may be gone already if it was the oldest of all once.
+            events_.erase(superseded_.front());
+            superseded_.pop_front();
+            continue;
+        }
+        const auto oldest = events_.begin();
+        if (oldest->second.kind != EventKind::progress) lost_id_ = oldest->first;
+        events_.erase(oldest);
+    }
+}
+
+EventLog::Batch EventLog::wait_after(std::uint64_t id, std::chrono::milliseconds timeout) const {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, timeout, [&] { return closed_ || last_id_ > id; });
+    if (id < lost_id_) return {Status::too_old, Fill::partial, {}};
+    Batch batch;
+    for (auto it = events_.upper_bound(id); it != events_.end() && batch.events.size() < config_.batch; ++it)
+        batch.events.push_back(it->second);
+    if (batch.events.size() == config_.batch) batch.fill = Fill::full;
+    if (batch.events.empty() && closed_) batch.status = Status::ended;
+    return batch;
+}
+
+std::uint64_t EventLog::last_id() const {
+    const std::lock_guard lock(mutex_);
+    return last_id_;
+}
+
+std::optional<Event> EventLog::end() const {
+    const std::lock_guard lock(mutex_);
+    if (events_.empty() || events_.rbegin()->second.kind != EventKind::end) return std::nullopt;
+    return events_.rbegin()->second;
+}
+
+}  // namespace afterglow

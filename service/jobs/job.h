@@ -1,0 +1,55 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "service/base/frame_range.h"
+#include "service/base/problem.h"
+#include "service/base/timestamp.h"
+#include "solver/base/error.h"
+#include "solver/base/math.h"
+#include "solver/sequence/sequence.h"
+
+namespace afterglow {
+
+/// Where a job stands.
+enum class JobState { queued, running, succeeded, failed, cancelled };
+
+std::string_view name_of(JobState state);
+/// True for the last three states.
+bool has_ended(JobState state);
+/// The legal transitions: queued → running, failed, cancelled; running → succeeded, failed, cancelled.
+bool may_follow(JobState from, JobState to);
+
+/// What a client asks for.
+struct JobSettings {
+    std::optional<FrameRange> frames;  ///< the whole animation where not given
+    SequenceConfig sequence;           ///< handed to the solver as it is
+    std::optional<Rgb> background;     ///< replaces the scene's own background radiance, W/m²/sr, ≥ 0
+};
+
+/// A job as clients see it. A value; the service's own copy lives in JobStore.
+struct Job {
+    std::string id;
+    JobState state = JobState::queued;
+    std::string scene;  ///< id of the upload
+    std::string paths;  ///< id of the upload; empty: none
+    JobSettings settings;
+    FrameRange frames;                                       ///< what will be computed
+    int frames_done = 0;                                     ///< frames with a final picture
+    double progress = 0;                                     ///< of the whole job, in [0, 1]; never decreases
+    std::string doing;                                       ///< what is being done, for people
+    std::optional<std::chrono::duration<double>> remaining;  ///< estimated; empty while unknown
+    Timestamp created{};
+    std::optional<Timestamp> started;
+    std::optional<Timestamp> ended;
+    std::optional<Problem> error;  ///< why it failed
+    Warnings warnings;
+    SequenceStatistics statistics;
+
+    [[nodiscard]] int frame_count() const { return frames.last - frames.first + 1; }
+};
+
+}  // namespace afterglow

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "service/jobs/event_log.h"
+#include "service/jobs/frame_info.h"
+#include "service/jobs/job.h"
+#include "solver/base/context.h"
+
+namespace afterglow {
+
+struct JobStoreConfig {
+    EventLogConfig events;                             ///< of each job
+    std::chrono::milliseconds progress_interval{100};  ///< least time between two progress events of a job
+};
+
+/// All jobs with their events. Every change of a job goes through here, is checked against the legal
+/// transitions and told to its readers. Changes to a job that has ended or does not exist do nothing: whoever
+/// comes last with news of a cancelled job need not know. Thread-safety: all members.
+class JobStore {
+  public:
+    explicit JobStore(JobStoreConfig config = {});
+
+    /// Gives the job its id and its place in the list. The draft has scene, paths, settings, frames and
+    /// warnings.
+    Job add(Job draft);
+    [[nodiscard]] std::optional<Job> find(const std::string& id) const;
+    /// Newest first.
+    [[nodiscard]] std::vector<Job> list() const;
+    /// Null for an unknown id.
+    [[nodiscard]] std::shared_ptr<const EventLog> events(const std::string& id) const;
+    /// Stopped as soon as the job has ended for whatever reason.
+    [[nodiscard]] std::stop_token stop_token(const std::string& id) const;
+
+    /// queued → running. False: the job has ended.
+    bool start(const std::string& id);
+    /// The job ends, and its work is told to stop. False: it had ended before.
+    bool end(const std::string& id, JobState state, const std::optional<Problem>& error = std::nullopt);
+
+    /// How far the computation of one frame is; `frames_before`: frames of the job already computed.
+    void note_progress(const std::string& id, int frame, int frames_before, const Progress& progress);
+    void note_statistics(const std::string& id, const SequenceStatistics& statistics);
+    /// Adds those warnings that the job does not have yet.
+    void note_warnings(const std::string& id, const Warnings& warnings);
+    /// A picture can now be fetched.
+    void note_picture(const std::string& id, const FrameInfo& info);
+
+  private:
+    struct Record {
+        Job job;
+        std::shared_ptr<EventLog> events;
+        std::stop_source stop;
+        std::chrono::steady_clock::time_point last_progress;
+    };
+    Record* active(const std::string& id);
+
+    JobStoreConfig config_;
+    mutable std::mutex mutex_;
+    std::map<std::string, Record> records_;
+    std::vector<std::string> order_;  ///< ids, oldest first
+};
+
+}  // namespace afterglow

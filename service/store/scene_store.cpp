@@ -1,0 +1,119 @@
+#include "service/store/scene_store.h"
+
+#include <system_error>
+#include <utility>
+
+#include "service/base/identity.h"
+#include "solver/base/file.h"
+
+namespace afterglow {
+
+namespace {
+
+constexpr const char* paths_name = "paths";  // stands for the uploaded document in messages
+
+/// Everything that decides what the bytes mean is part of the name; what they are called is not.
+std::string id_of(std::string_view bytes, const SceneUpload& upload) {
+    const std::string how = std::to_string(static_cast<int>(upload.format)) + "|" +
+                            std::to_string(upload.load.obj_unit_m) + "|" +
+                            std::to_string(static_cast<int>(upload.load.obj_up)) + "|";
+    return content_id(how + sha256(bytes));
+}
+
+StoredScene describe(const std::string& id, const SceneUpload& upload, std::uint64_t bytes,
+                     const World& world) {
+    StoredScene scene{id, upload, bytes, 0, 0, {}, 0, 0, {}};
+    for (const Body& body : world.bodies) scene.triangles += body.triangles.size();
+    scene.actors = world.bodies.empty() ? 0 : world.bodies.size() - 1;
+    for (const PlacedCamera& camera : world.cameras) scene.cameras.push_back(camera.camera.name);
+    scene.frames_per_second = world.frames_per_second;
+    scene.last_frame = last_frame_of(world, SequenceConfig{});
+    scene.warnings = world.warnings;
+    return scene;
+}
+
+}  // namespace
+
+Json to_json(const StoredScene& scene) {
+    Json warnings = Json::array();
+    for (const Warning& warning : scene.warnings)
+        warnings.push_back({{"place", warning.place}, {"message", warning.message}});
+    return {{"id", scene.id},
+            {"name", scene.upload.name},
+            {"bytes", scene.bytes},
+            {"triangles", scene.triangles},
+            {"actors", scene.actors},
+            {"cameras", scene.cameras},
+            {"frames_per_second", scene.frames_per_second},
+            {"last_frame", scene.last_frame},
+            {"warnings", std::move(warnings)}};
+}
+
+SceneStore::SceneStore(std::filesystem::path folder, Reader reader)
+    : folder_(std::move(folder)), reader_(std::move(reader)) {
+    if (!reader_)
+        reader_ = [](std::string_view bytes, const SceneUpload& upload) {
+            return read_scene(bytes, upload.format, upload.name, upload.load);
+        };
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) throw Error(ErrorKind::io, folder_.string(), error.message());
+}
+
+std::filesystem::path SceneStore::file_of(const std::string& id) const {
+    return folder_ / id;
+}
+
+SceneStore::Added SceneStore::add(std::string_view bytes, const SceneUpload& upload) {
+    const std::string id = id_of(bytes, upload);
+    if (auto known = find(id)) return {*std::move(known), Added::Outcome::known};
+    const World world = assemble(reader_(bytes, upload), upload.load.collinear_tolerance_m,
+                                 upload.load.collinear_tolerance_rad);
+    StoredScene scene = describe(id, upload, bytes.size(), world);
+
+    // Under the lock, since two uploads of one content would write to one temporary name.
+    const std::lock_guard lock(mutex_);
+    write_file(file_of(id), bytes);
+    const auto outcome = scenes_.emplace(id, scene).second ? Added::Outcome::created : Added::Outcome::known;
+    return {std::move(scene), outcome};
+}
+
+std::string SceneStore::add_paths(std::string_view json_text) {
+    const Json document = parse_json(json_text, paths_name);
+    if (!document.is_object()) JsonView(document, paths_name).fail("expected an object");
+    std::string id = content_id("paths|" + sha256(json_text));
+    const std::lock_guard lock(mutex_);
+    if (!paths_.contains(id)) {
+        write_file(file_of(id), json_text);
+        paths_.emplace(id, json_text.size());
+    }
+    return id;
+}
+
+std::optional<StoredScene> SceneStore::find(const std::string& id) const {
+    const std::lock_guard lock(mutex_);
+    const auto it = scenes_.find(id);
+    if (it == scenes_.end()) return std::nullopt;
+    return it->second;
+}
+
+bool SceneStore::has_paths(const std::string& id) const {
+    const std::lock_guard lock(mutex_);
+    return paths_.contains(id);
+}
+
+World SceneStore::world(const std::string& scene, const std::string& paths,
+                        const std::optional<Rgb>& background) const {
+    const auto stored = find(scene);
+    if (!stored) throw Error(ErrorKind::not_found, "scene", "there is no scene " + scene);
+    if (!paths.empty() && !has_paths(paths))
+        throw Error(ErrorKind::not_found, "paths", "there are no paths " + paths);
+
+    SceneUpload upload = stored->upload;
+    if (background) upload.load.background = background;
+    Scene read = reader_(read_file(file_of(scene)), upload);
+    if (!paths.empty()) apply_paths(read, read_file(file_of(paths)), paths_name, upload.load);
+    return assemble(read, upload.load.collinear_tolerance_m, upload.load.collinear_tolerance_rad);
+}
+
+}  // namespace afterglow
