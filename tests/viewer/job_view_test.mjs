@@ -1,0 +1,47 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { describe, final_frames, make_job_view, percent, state_of, take_event } from "../../service/viewer/job_view.js";
+
+const job = { id: "j", first_frame: 3, last_frame: 9, state: "running", frames: [] };
+const image = (frame, final, more = {}) => ({ frame, revision: 1, url: `/${frame}`, final, residual: 0.1, error_bound: null, ...more });
+
+test("frames go from queued to coarse to converged", () => {
+  let view = make_job_view(job);
+  assert.equal(state_of(view, 4), "queued");
+  view = take_event(view, "image", image(4, false), 1);
+  assert.equal(state_of(view, 4), "coarse");
+  view = take_event(view, "image", image(4, true, { error_bound: 0.02 }), 2);
+  assert.equal(state_of(view, 4), "converged");
+  assert.deepEqual(final_frames(view), [4]);
+  assert.equal(describe(view, 4), "frame 4, converged, within 2.0 %");
+});
+
+test("an edit makes finished frames from its own on stale, and a new picture makes them fresh", () => {
+  let view = make_job_view(job);
+  for (const frame of [3, 4, 5]) view = take_event(view, "image", image(frame, true), 1);
+  view = take_event(view, "edit", { first_frame: 4 }, 2);
+  assert.deepEqual([3, 4, 5, 6].map((f) => state_of(view, f)), ["converged", "stale", "stale", "queued"]);
+  view = take_event(view, "image", image(4, true), 3);
+  assert.equal(state_of(view, 4), "converged");
+});
+
+test("a snapshot replaces what is known of frames and keeps the curve", () => {
+  let view = take_event(make_job_view(job), "image", image(4, false), 10);
+  view = take_event(view, "image", image(5, false), 12);
+  view = take_event(view, "snapshot", { ...job, frames: [{ frame: 7, final: true, png: "/7", error_bound: 0.1 }] }, 13);
+  assert.equal(state_of(view, 5), "queued");
+  assert.equal(view.frames.get(7).url, "/7");
+  assert.deepEqual(view.points.map((p) => p.time_s), [0, 2]);
+});
+
+test("a curve has the certificate where there is one, and no zeros, which its scale cannot show", () => {
+  let view = take_event(make_job_view(job), "image", image(4, false, { residual: 0.3 }), 1);
+  view = take_event(view, "image", image(4, true, { error_bound: 0.01 }), 2);
+  view = take_event(view, "image", image(5, true, { residual: 0 }), 3);
+  assert.deepEqual(view.points.map((p) => p.error), [0.3, 0.01]);
+});
+
+test("shares read as percentages of two digits", () => {
+  assert.deepEqual([0.0123, 0.5, 1, 12].map(percent), ["1.2 %", "50 %", "100 %", "1200 %"]);
+});

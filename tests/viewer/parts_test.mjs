@@ -1,0 +1,36 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { columns } from "../../service/viewer/chart.js";
+import { settings_of } from "../../service/viewer/job_list.js";
+import { facts_of } from "../../service/viewer/job_panel.js";
+import { next_final } from "../../service/viewer/player.js";
+import { difference } from "../../service/viewer/stage.js";
+
+test("differences are amplified, clipped and opaque", () => {
+  assert.deepEqual([...difference([10, 200, 3, 255], [12, 100, 3, 255], 8)], [16, 255, 0, 255]);
+});
+
+test("playback goes from one finished frame to the next and begins anew", () => {
+  assert.equal(next_final([2, 5, 9], 2), 5);
+  assert.equal(next_final([2, 5, 9], 6), 9);
+  assert.equal(next_final([2, 5, 9], 9), 2);
+  assert.equal(next_final([], 4), 4);
+});
+
+test("preliminary and final errors are two curves over one time", () => {
+  const { data } = columns([{ time_s: 2, error: 0.1, final: true }, { time_s: 1, error: 0.3, final: false }]);
+  assert.deepEqual(data, [[1, 2], [0.3, null], [null, 0.1]]);
+});
+
+test("a form left as it is asks for all frames", () => {
+  const form = new Map([["size", "640x360"], ["quality", "draft"], ["method", "auto"], ["frames", ""]]);
+  assert.deepEqual(settings_of(form), { quality: "draft", method: "auto", width: 640, height: 360 });
+  form.set("frames", "0-4");
+  assert.equal(settings_of(form).frames, "0-4");
+});
+
+test("a failed job says why", () => {
+  const facts = new Map(facts_of({ state: "failed", error: { detail: "out of memory" }, progress: 0.5 }));
+  assert.equal(facts.get("State"), "failed: out of memory");
+});
