@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "service/api/routes.h"
+#include "service/viewer/viewer_routes.h"
 
 namespace afterglow {
 
@@ -32,6 +33,7 @@ Service::Service(const ServiceConfig& config, ServiceParts parts)
     add_job_routes(router_, context);
     add_frame_routes(router_, context);
     add_stream_routes(router_, context);
+    add_viewer_routes(router_);
 }
 
 Service::~Service() {

@@ -59,7 +59,7 @@ function show_soon() {
 async function choose_job(id) {
   followed?.abort();
   followed = new AbortController();
-  location.hash = id;
+  history.replaceState(null, "", `#${id}`);
   jobs.choose(id);
   view = null;
   try {
