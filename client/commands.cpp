@@ -4,8 +4,10 @@
 #include <iomanip>
 #include <ostream>
 
+#include "client/completion.h"
 #include "client/fetch.h"
 #include "client/job.h"
+#include "client/movie.h"
 #include "client/problem.h"
 #include "client/text.h"
 
@@ -19,10 +21,6 @@ struct Overloaded : Handlers... {
 };
 template <typename... Handlers>
 Overloaded(Handlers...) -> Overloaded<Handlers...>;
-
-std::string job_path(const std::string& id) {
-    return "/v1/jobs/" + percent_encode(id);
-}
 
 std::string frames_text(const Job& job) {
     return std::to_string(job.frames_done) + "/" + std::to_string(job.frame_count());
@@ -53,6 +51,16 @@ void print_table(std::ostream& out, const std::vector<Job>& jobs) {
 
 }  // namespace
 
+HttpConnection connect(const Session& session) {
+    HttpConfig config;
+    config.token = session.options.token;
+    return HttpConnection(session.options.server, session.interrupt, config);
+}
+
+std::string job_path(const std::string& id) {
+    return "/v1/jobs/" + percent_encode(id);
+}
+
 ExitCode run_command(const Session& session) {
     const auto run = Overloaded{
         [&](const HelpCommand& help) {
@@ -64,13 +72,30 @@ ExitCode run_command(const Session& session) {
         [&](const GetCommand& get) { return run_get(session, get); },
         [&](const ListCommand&) { return run_list(session); },
         [&](const ShowCommand& show) { return run_show(session, show); },
-        [&](const CancelCommand& cancel) { return run_cancel(session, cancel); },
+        [&](const StepCommand& step) { return run_step(session, step); },
+        [&](const RemoveCommand& remove) { return run_remove(session, remove); },
+        [&](const DoctorCommand&) { return run_doctor(session); },
+        [&](const CompletionCommand&) { return run_completion(session); },
     };
     return std::visit(run, session.options.command);
 }
 
+namespace {
+
+/// What a movie of a job is made of. Errors: bad_input while frames are missing.
+MovieFrames frames_to_show(const Json& job_json, const Job& job, const GetCommand& command) {
+    if (job.frames_done < job.frame_count())
+        throw ClientError(ExitCode::bad_input, "--movie",
+                          "only " + frames_text(job) + " frames are finished; wait for the job to end");
+    constexpr double usual_rate = 24;
+    const double rate = find_number(find_member(job_json, "settings"), "fps").value_or(usual_rate);
+    return {command.out, job.first_frame, rate};
+}
+
+}  // namespace
+
 ExitCode run_get(const Session& session, const GetCommand& command) {
-    HttpConnection connection(session.options.server, session.interrupt);
+    HttpConnection connection = connect(session);
     const auto job_json = json_reply(connection.get(job_path(command.id)), connection.server());
     const Job job = read_job(job_json, connection.server());
     FrameFetcher fetcher(connection, command.out, command.type);
@@ -80,6 +105,7 @@ ExitCode run_get(const Session& session, const GetCommand& command) {
         for (const auto& file : fetcher.fetch(image)) files.push_back(file.string());
         frames.push_back({{"frame", image.frame}, {"files", files}});
     }
+    if (command.movie) make_movie(frames_to_show(job_json, job, command), *command.movie);
     if (session.options.format == OutputFormat::json) {
         session.out << to_line({{"id", job.id}, {"state", job.state_name}, {"frames", frames}}) << '\n';
         return ExitCode::ok;
@@ -91,7 +117,7 @@ ExitCode run_get(const Session& session, const GetCommand& command) {
 }
 
 ExitCode run_list(const Session& session) {
-    HttpConnection connection(session.options.server, session.interrupt);
+    HttpConnection connection = connect(session);
     const Json body = json_reply(connection.get("/v1/jobs"), connection.server());
     if (session.options.format == OutputFormat::json) {
         session.out << to_line(body) << '\n';
@@ -104,7 +130,7 @@ ExitCode run_list(const Session& session) {
 }
 
 ExitCode run_show(const Session& session, const ShowCommand& command) {
-    HttpConnection connection(session.options.server, session.interrupt);
+    HttpConnection connection = connect(session);
     const Json body = json_reply(connection.get(job_path(command.id)), connection.server());
     if (session.options.format == OutputFormat::json)
         session.out << to_line(body) << '\n';
@@ -113,15 +139,35 @@ ExitCode run_show(const Session& session, const ShowCommand& command) {
     return ExitCode::ok;
 }
 
-ExitCode run_cancel(const Session& session, const CancelCommand& command) {
-    HttpConnection connection(session.options.server, session.interrupt);
-    const Json body = json_reply(connection.post(job_path(command.id) + "/cancel", "", "application/json"),
-                                 connection.server());
+ExitCode run_step(const Session& session, const StepCommand& command) {
+    HttpConnection connection = connect(session);
+    const std::string path = job_path(command.id) + "/" + std::string(name_of(command.step));
+    const Json body = json_reply(connection.post(path, "", "application/json"), connection.server());
     if (session.options.format == OutputFormat::json)
         session.out << to_line(body) << '\n';
     else
         session.out << "job " << one_line(command.id) << " " << read_job(body, connection.server()).state_name
                     << '\n';
+    return ExitCode::ok;
+}
+
+ExitCode run_remove(const Session& session, const RemoveCommand& command) {
+    HttpConnection connection = connect(session);
+    const bool is_trial = command.removal == Removal::tried;
+    const HttpReply reply = connection.remove(job_path(command.id) + (is_trial ? "?dry_run=1" : ""));
+    const Json body = json_reply(reply, connection.server());
+    if (session.options.format == OutputFormat::json) {
+        session.out << to_line(body) << '\n';
+        return ExitCode::ok;
+    }
+    session.out << "job " << one_line(command.id) << (is_trial ? " would be removed" : " removed");
+    if (const auto bytes = find_number(body, "bytes")) session.out << ": " << *bytes / 1e6 << " MB";
+    session.out << '\n';
+    return ExitCode::ok;
+}
+
+ExitCode run_completion(const Session& session) {
+    session.out << bash_completion(command_syntax());
     return ExitCode::ok;
 }
 

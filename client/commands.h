@@ -18,6 +18,11 @@ struct Session {
     std::function<int()> columns;  ///< of the terminal that `out` is; empty where it is none
 };
 
+/// A connection to the session's server.
+HttpConnection connect(const Session& session);
+/// Where a job stands on any server.
+std::string job_path(const std::string& id);
+
 /// Runs the chosen command. Returns ok, or for a watched job how it ended. Errors: ClientError.
 ExitCode run_command(const Session& session);
 
@@ -29,6 +34,10 @@ ExitCode run_watch(const Session& session, const WatchCommand& command);
 ExitCode run_get(const Session& session, const GetCommand& command);
 ExitCode run_list(const Session& session);
 ExitCode run_show(const Session& session, const ShowCommand& command);
-ExitCode run_cancel(const Session& session, const CancelCommand& command);
+ExitCode run_step(const Session& session, const StepCommand& command);
+ExitCode run_remove(const Session& session, const RemoveCommand& command);
+/// One line for each thing that is checked. Returns no_server where the server is of no use.
+ExitCode run_doctor(const Session& session);
+ExitCode run_completion(const Session& session);
 
 }  // namespace afterglow::client

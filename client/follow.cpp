@@ -13,9 +13,9 @@ namespace {
 /// Follows a job; with a folder, fetches its frames as they finish.
 ExitCode follow_to_end(const Session& session, const std::string& id, WatchView& view,
                        const std::optional<std::filesystem::path>& out) {
-    const std::string path = "/v1/jobs/" + percent_encode(id) + "/events";
-    HttpConnection events(session.options.server, session.interrupt);
-    HttpConnection pictures(session.options.server, session.interrupt);
+    const std::string path = job_path(id) + "/events";
+    HttpConnection events = connect(session);
+    HttpConnection pictures = connect(session);
     FrameFetcher fetcher(pictures, out.value_or(""), PictureType::both);
     WatchLinks links;
     links.open = [&](const HttpHeaders& headers, const StreamSink& sink) {

@@ -106,6 +106,7 @@ HttpConnection::HttpConnection(std::string server, Interrupt& interrupt, HttpCon
     client.set_connection_timeout(config_.connect);
     client.set_write_timeout(config_.upload);
     client.set_read_timeout(config_.reply);
+    if (!config_.token.empty()) client.set_bearer_token_auth(config_.token.c_str());
     interrupt_.set_action(this, [this] { library_->client.stop(); });
 }
 
@@ -124,9 +125,15 @@ HttpReply HttpConnection::head(const std::string& path) {
 }
 
 HttpReply HttpConnection::post(const std::string& path, std::string_view body,
-                               const std::string& content_type) {
+                               const std::string& content_type, const HttpHeaders& headers) {
     interrupt_.check();
-    return Library::take(library_->client.Post(path, body.data(), body.size(), content_type), *this);
+    return Library::take(
+        library_->client.Post(path, library_headers(headers), body.data(), body.size(), content_type), *this);
+}
+
+HttpReply HttpConnection::remove(const std::string& path) {
+    interrupt_.check();
+    return Library::take(library_->client.Delete(path), *this);
 }
 
 HttpReply HttpConnection::stream(const std::string& path, const HttpHeaders& headers,

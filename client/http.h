@@ -33,7 +33,7 @@ struct HttpReply {
 enum class StreamNext { more, stop };
 using StreamSink = std::function<StreamNext(std::string_view bytes)>;
 
-/// How long to wait for the other side.
+/// How long to wait for the other side, and what to show it.
 struct HttpConfig {
     std::chrono::seconds connect{5};  ///< to be connected
     std::chrono::seconds reply{
@@ -41,6 +41,7 @@ struct HttpConfig {
     std::chrono::seconds stream{
         60};  ///< for the next bytes of a stream, several times the server's heartbeat
     std::chrono::seconds upload{60};  ///< for the server to take more bytes
+    std::string token;                ///< shown to the server with every request; empty: none
 };
 
 /// A connection to one server, reused from request to request. The only user of cpp-httplib.
@@ -59,7 +60,10 @@ class HttpConnection {
     HttpReply get(const std::string& path, const HttpHeaders& headers = {});
     /// Status and headers only.
     HttpReply head(const std::string& path);
-    HttpReply post(const std::string& path, std::string_view body, const std::string& content_type);
+    HttpReply post(const std::string& path, std::string_view body, const std::string& content_type,
+                   const HttpHeaders& headers = {});
+    /// DELETE.
+    HttpReply remove(const std::string& path);
     /// Passes the body of a 200 reply on as it arrives, until it ends, breaks off or the sink says stop; the
     /// reply's own body is then empty. Any other status is returned whole. Throws no_server only where no
     /// reply began: a stream that breaks off returns normally, for the caller knows whether it was complete.

@@ -21,9 +21,14 @@ int terminal_columns() {
     return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
 }
 
+std::string from_environment(const char* name) {
+    const char* value = std::getenv(name);
+    return value == nullptr ? "" : value;
+}
+
 ExitCode run(const std::vector<std::string>& arguments) {
-    const char* server = std::getenv("AFTERGLOW_SERVER");
-    const Options options = parse_options(arguments, server == nullptr ? "" : server);
+    const Options options =
+        parse_options(arguments, {from_environment("AFTERGLOW_SERVER"), from_environment("AFTERGLOW_TOKEN")});
     Interrupt interrupt;
     Session session{options, interrupt, std::cout, std::cerr, {}};
     if (::isatty(STDOUT_FILENO) == 1) session.columns = terminal_columns;

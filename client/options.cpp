@@ -1,10 +1,13 @@
 #include "client/options.h"
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
 
+#include "client/file.h"
 #include "client/http.h"
 
 namespace afterglow::client {
@@ -14,12 +17,15 @@ namespace {
 /// What CLI11 fills in; `build` turns it into Options.
 struct Raw {
     std::string server;
+    std::string token_file;
     bool json = false;
     SubmitCommand submit;
     bool watch = false;
     std::string id;
     std::string out;
+    std::string movie;
     PictureType type = PictureType::both;
+    bool is_trial = false;
     std::map<std::string, CLI::App*> commands;
 };
 
@@ -78,6 +84,7 @@ void add_get(CLI::App& app, Raw& raw) {
     app.add_option("--type", raw.type, "png, exr or both (the default)")
         ->transform(CLI::CheckedTransformer(types))
         ->type_name("");
+    app.add_option("--movie", raw.movie, "Make a movie of them, such as out.mp4 (needs ffmpeg)")->type_name("");
 }
 
 CLI::App& add_command(CLI::App& app, Raw& raw, const std::string& name, const std::string& help) {
@@ -92,6 +99,8 @@ void define(CLI::App& app, Raw& raw) {
     app.require_subcommand(1);
     app.add_option("--server", raw.server, "URL; default: AFTERGLOW_SERVER, else http://127.0.0.1:8080")
         ->type_name("");
+    app.add_option("--token-file", raw.token_file, "File with a token; default: AFTERGLOW_TOKEN, else none")
+        ->type_name("");
     add_submit(add_command(app, raw, "submit", "Upload a scene and start a job"), raw);
     const auto with_id = [&](const char* name, const char* help) {
         add_command(app, raw, name, help).add_option("ID", raw.id, "The job")->required()->type_name("");
@@ -100,7 +109,22 @@ void define(CLI::App& app, Raw& raw) {
     add_get(add_command(app, raw, "get", "Fetch finished frames"), raw);
     add_command(app, raw, "ls", "List the jobs, newest first");
     with_id("show", "Show one job");
-    with_id("cancel", "Cancel a job");
+    with_id("pause", "Let a job rest after the frame in hand");
+    with_id("resume", "Let a paused job go on");
+    with_id("cancel", "Cancel a job; its finished frames stay");
+    with_id("retry", "Let a failed or cancelled job go on from its last finished frame");
+    with_id("rm", "Remove a job that has ended, with its pictures");
+    raw.commands.at("rm")->add_flag("--dry-run", raw.is_trial, "Say what would go, and leave it");
+    add_command(app, raw, "doctor", "Check the way to the server, and what else is needed");
+    add_command(app, raw, "completion", "Print completions for bash: source <(afterglow completion)");
+}
+
+GetCommand get_command(const Raw& raw) {
+    GetCommand get{raw.id, raw.out, raw.type, {}};
+    if (!raw.movie.empty()) get.movie = raw.movie;
+    if (get.movie && get.type == PictureType::exr)
+        throw ClientError(ExitCode::bad_input, "--movie", "is made of .png files: --type png or both");
+    return get;
 }
 
 Command command_of(Raw& raw) {
@@ -111,17 +135,37 @@ Command command_of(Raw& raw) {
         return std::move(raw.submit);
     }
     if (chosen("ls")) return ListCommand{};
+    if (chosen("doctor")) return DoctorCommand{};
+    if (chosen("completion")) return CompletionCommand{};
     // An empty id would turn the path of one job into that of all jobs.
     if (raw.id.empty()) throw ClientError(ExitCode::bad_input, "ID", "must not be empty");
     if (chosen("watch")) return WatchCommand{raw.id};
-    if (chosen("get")) return GetCommand{raw.id, raw.out, raw.type};
+    if (chosen("get")) return get_command(raw);
     if (chosen("show")) return ShowCommand{raw.id};
-    return CancelCommand{raw.id};
+    if (chosen("rm")) return RemoveCommand{raw.id, raw.is_trial ? Removal::tried : Removal::done};
+    for (const Step step : {Step::pause, Step::resume, Step::retry})
+        if (chosen(std::string(name_of(step)).c_str())) return StepCommand{raw.id, step};
+    return StepCommand{raw.id, Step::cancel};
+}
+
+/// The token that a file holds. Errors: bad_input where it holds none.
+std::string read_token(const std::string& file) {
+    std::string token = read_input(file);
+    token.erase(token.find_last_not_of(" \t\r\n") + 1);
+    const bool is_one_word = std::all_of(token.begin(), token.end(), [](char c) { return c > ' ' && c < 127; });
+    if (token.empty() || !is_one_word)
+        throw ClientError(ExitCode::bad_input, "--token-file " + file, "must hold one token and nothing else");
+    return token;
 }
 
 }  // namespace
 
-Options parse_options(const std::vector<std::string>& arguments, const std::string& environment_server) {
+std::string_view name_of(Step step) {
+    constexpr std::array<std::string_view, 4> names{"pause", "resume", "cancel", "retry"};
+    return names.at(static_cast<std::size_t>(step));
+}
+
+Options parse_options(const std::vector<std::string>& arguments, const Environment& environment) {
     CLI::App app("Render animations on an Afterglow server.", "afterglow");
     app.footer(exit_code_help());
     Raw raw;
@@ -132,16 +176,33 @@ Options parse_options(const std::vector<std::string>& arguments, const std::stri
     } catch (const CLI::ParseError& error) {
         std::ostringstream out;
         std::ostringstream err;
-        if (app.exit(error, out, err) == 0) return {"", "", OutputFormat::text, HelpCommand{out.str()}};
+        if (app.exit(error, out, err) == 0) return {"", "", "", OutputFormat::text, HelpCommand{out.str()}};
         throw ClientError(ExitCode::bad_input, "", std::string(error.what()) + " (see --help)");
     }
     Options options;
-    const std::string fallback = environment_server.empty() ? "http://127.0.0.1:8080" : environment_server;
+    const std::string fallback = environment.server.empty() ? "http://127.0.0.1:8080" : environment.server;
     options.server = parse_server_url(raw.server.empty() ? fallback : raw.server);
     if (!raw.server.empty()) options.server_hint = " --server " + options.server;
+    options.token = raw.token_file.empty() ? environment.token : read_token(raw.token_file);
     options.format = raw.json ? OutputFormat::json : OutputFormat::text;
     options.command = command_of(raw);
     return options;
+}
+
+std::vector<CommandSyntax> command_syntax() {
+    CLI::App app;
+    Raw raw;
+    define(app, raw);
+    std::vector<CommandSyntax> syntax;
+    for (const CLI::App* command : app.get_subcommands({})) {
+        CommandSyntax& one = syntax.emplace_back(CommandSyntax{command->get_name(), {}});
+        for (const CLI::App* source : {command, static_cast<const CLI::App*>(&app)})
+            for (const CLI::Option* option : source->get_options())
+                for (const std::string& name : option->get_lnames())
+                    if (std::ranges::find(one.options, "--" + name) == one.options.end())
+                        one.options.push_back("--" + name);
+    }
+    return syntax;
 }
 
 }  // namespace afterglow::client

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -51,32 +52,61 @@ struct GetCommand {
     std::string id;
     std::filesystem::path out;
     PictureType type = PictureType::both;
+    std::optional<std::filesystem::path> movie;  ///< to be made of the frames, which must then all be there
 };
 struct ListCommand {};
 struct ShowCommand {
     std::string id;
 };
-struct CancelCommand {
+/// A change of a job's state.
+enum class Step { pause, resume, cancel, retry };
+std::string_view name_of(Step step);
+struct StepCommand {
     std::string id;
+    Step step = Step::cancel;
 };
+/// Whether `rm` removes, or only says what it would.
+enum class Removal { done, tried };
+struct RemoveCommand {
+    std::string id;
+    Removal removal = Removal::done;
+};
+/// Says whether client and server can work together, and what to do where they cannot.
+struct DoctorCommand {};
+/// Prints a script that completes command lines in bash.
+struct CompletionCommand {};
 /// --help was asked for.
 struct HelpCommand {
     std::string text;
 };
 using Command = std::variant<HelpCommand, SubmitCommand, WatchCommand, GetCommand, ListCommand, ShowCommand,
-                             CancelCommand>;
+                             StepCommand, RemoveCommand, DoctorCommand, CompletionCommand>;
 
 struct Options {
     std::string server;  ///< as from parse_server_url
     /// What must be added to a command line so that it finds the same server: "" or " --server URL".
     std::string server_hint;
+    std::string token;  ///< to be shown to the server; empty: none
     OutputFormat format = OutputFormat::text;
     Command command;
 };
 
-/// Reads the command line. `arguments` without the program's name; `environment_server` is the value of
-/// AFTERGLOW_SERVER, or empty. Errors: bad_input naming the option.
-Options parse_options(const std::vector<std::string>& arguments, const std::string& environment_server);
+/// What the environment says; empty where it says nothing.
+struct Environment {
+    std::string server;  ///< AFTERGLOW_SERVER
+    std::string token;   ///< AFTERGLOW_TOKEN
+};
+
+/// Reads the command line, and the token's file if it names one. `arguments` without the program's name; they
+/// go before the environment. Errors: bad_input naming the option.
+Options parse_options(const std::vector<std::string>& arguments, const Environment& environment);
+
+/// A command and the options it takes, for completion.
+struct CommandSyntax {
+    std::string name;
+    std::vector<std::string> options;  ///< with their dashes
+};
+std::vector<CommandSyntax> command_syntax();
 
 /// "640x360" → width and height, each 1 to 16,384. Errors: bad_input.
 std::pair<int, int> parse_size(const std::string& text);

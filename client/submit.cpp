@@ -40,7 +40,7 @@ Job submit(const Session& session, const SubmitCommand& command, WatchView& view
     const std::string scene_bytes = read_input(command.scene);
     const std::string paths_bytes = command.paths ? read_input(*command.paths) : "";
 
-    HttpConnection connection(session.options.server, session.interrupt);
+    HttpConnection connection = connect(session);
     const Json scene = upload(connection, "/v1/scenes" + scene_query(command), scene_bytes, type);
     tell_warnings(session, view, read_warnings(find_member(scene, "warnings")));
     Json request{{"scene", scene["id"]}};

@@ -1,5 +1,8 @@
 #include "client/options.h"
 
+#include <filesystem>
+#include <fstream>
+
 #include <gmock/gmock.h>
 
 namespace afterglow::client {
@@ -8,7 +11,7 @@ namespace {
 using testing::HasSubstr;
 
 Options parse(const std::vector<std::string>& arguments, const std::string& environment = "") {
-    return parse_options(arguments, environment);
+    return parse_options(arguments, {environment, ""});
 }
 
 /// The message of the bad_input error that parsing ends in; fails the test where there is none.
@@ -70,13 +73,36 @@ TEST(Options, WatchesWhenAFolderForFramesIsGiven) {
 TEST(Options, ReadsTheOtherCommands) {
     EXPECT_EQ(std::get<WatchCommand>(parse({"watch", "j1"}).command).id, "j1");
     EXPECT_EQ(std::get<ShowCommand>(parse({"show", "j1"}).command).id, "j1");
-    EXPECT_EQ(std::get<CancelCommand>(parse({"cancel", "j1"}).command).id, "j1");
+    for (const Step step : {Step::pause, Step::resume, Step::cancel, Step::retry}) {
+        const auto command = std::get<StepCommand>(parse({std::string(name_of(step)), "j1"}).command);
+        EXPECT_EQ(command.id, "j1");
+        EXPECT_EQ(command.step, step);
+    }
+    EXPECT_EQ(std::get<RemoveCommand>(parse({"rm", "j1"}).command).removal, Removal::done);
+    EXPECT_EQ(std::get<RemoveCommand>(parse({"rm", "j1", "--dry-run"}).command).removal, Removal::tried);
+    EXPECT_TRUE(std::holds_alternative<DoctorCommand>(parse({"doctor"}).command));
+    EXPECT_TRUE(std::holds_alternative<CompletionCommand>(parse({"completion"}).command));
     EXPECT_TRUE(std::holds_alternative<ListCommand>(parse({"ls"}).command));
     const auto get = std::get<GetCommand>(parse({"get", "j1", "-o", "d", "--type", "exr"}).command);
     EXPECT_EQ(get.id, "j1");
     EXPECT_EQ(get.out, "d");
     EXPECT_EQ(get.type, PictureType::exr);
     EXPECT_EQ(std::get<GetCommand>(parse({"get", "j1", "-o", "d"}).command).type, PictureType::both);
+    EXPECT_EQ(std::get<GetCommand>(parse({"get", "j1", "-o", "d", "--movie", "m.mp4"}).command).movie,
+              "m.mp4");
+}
+
+TEST(Options, TakesTheTokenFromItsFileThenFromTheEnvironment) {
+    const auto file = std::filesystem::path(testing::TempDir()) / "token";
+    const auto given = [&](const std::string& content) {
+        std::ofstream(file) << content;
+        return std::vector<std::string>{"ls", "--token-file", file.string()};
+    };
+    EXPECT_EQ(parse_options({"ls"}, {"", "from-environment"}).token, "from-environment");
+    EXPECT_EQ(parse_options(given("from-file\n"), {"", "from-environment"}).token, "from-file");
+    for (const char* bad : {"", "\n", "two words", "two\nlines", "bell\a"})
+        EXPECT_THAT(complaint(given(bad)), HasSubstr("--token-file")) << bad;
+    EXPECT_THAT(complaint({"ls", "--token-file", "/no/such/file"}), HasSubstr("/no/such/file"));
 }
 
 TEST(Options, TakesTheServerBeforeOrAfterTheCommandThenFromTheEnvironment) {
@@ -108,6 +134,8 @@ TEST(Options, RefusesWhatItDoesNotKnow) {
     EXPECT_THAT(complaint({"get", "j1"}), HasSubstr("--out"));
     EXPECT_THAT(complaint({"get", "j1", "-o", "d", "--type", "jpg"}), HasSubstr("--type"));
     EXPECT_THAT(complaint({"watch", ""}), HasSubstr("ID"));
+    EXPECT_THAT(complaint({"get", "j1", "-o", "d", "--type", "exr", "--movie", "m.mp4"}),
+                HasSubstr("--movie"));
 }
 
 TEST(Options, ReadsSizes) {

@@ -1,0 +1,72 @@
+#include "client/movie.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <sys/stat.h>
+
+#include <gmock/gmock.h>
+
+#include "client/error.h"
+
+namespace afterglow::client {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// A folder that stands alone in PATH while a test runs, with an ffmpeg of the test's own or none.
+class Movie : public testing::Test {
+  protected:
+    void SetUp() override {
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+        path_ = std::getenv("PATH");
+        setenv("PATH", folder_.c_str(), 1);
+    }
+    void TearDown() override { setenv("PATH", path_.c_str(), 1); }
+
+    /// An ffmpeg that notes its arguments and ends so.
+    void install(int status) {
+        const auto file = folder_ / "ffmpeg";
+        std::ofstream(file) << "#!/bin/sh\necho \"$@\" >" << (folder_ / "said").string()
+                            << "\n[ \"$1\" = -version ] || exit " << status << '\n';
+        chmod(file.c_str(), 0755);
+    }
+    std::string said() {
+        std::stringstream text;
+        text << std::ifstream(folder_ / "said").rdbuf();
+        return text.str();
+    }
+
+    fs::path folder_ = fs::path(testing::TempDir()) / "movie";
+    std::string path_;
+};
+
+TEST_F(Movie, IsMadeOfTheFramesFromTheFirstOn) {
+    install(0);
+    EXPECT_EQ(find_movie_maker(), MovieMaker::present);
+    make_movie({"frames", 12, 12.5}, "out.mp4");
+    EXPECT_THAT(said(), HasSubstr("-framerate 12.5"));
+    EXPECT_THAT(said(), HasSubstr("-start_number 12 -i frames/frame_%04d.png"));
+    EXPECT_THAT(said(), HasSubstr("out.mp4"));
+}
+
+TEST_F(Movie, NeedsFfmpeg) {
+    EXPECT_EQ(find_movie_maker(), MovieMaker::missing);
+    try {
+        make_movie({}, "out.mp4");
+        ADD_FAILURE() << "made";
+    } catch (const ClientError& error) {
+        EXPECT_EQ(error.code(), ExitCode::local_failure);
+        EXPECT_THAT(error.what(), HasSubstr("ffmpeg"));
+    }
+}
+
+TEST_F(Movie, SaysThatItCouldNotBeMade) {
+    install(1);
+    EXPECT_THROW(make_movie({}, "out.mp4"), ClientError);
+}
+
+}  // namespace
+}  // namespace afterglow::client
