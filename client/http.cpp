@@ -40,8 +40,9 @@ std::string reason(httplib::Error error) {
         case httplib::Error::Write:
             return "does not take the request";
         case httplib::Error::SSLConnection:
-        case httplib::Error::SSLServerVerification:
             return "cannot be reached securely";
+        case httplib::Error::SSLServerVerification:
+            return "has a certificate that is not trusted here (SSL_CERT_FILE names further ones)";
         default:
             return "cannot be used (" + httplib::to_string(error) + ")";
     }
