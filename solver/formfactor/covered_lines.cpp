@@ -1,6 +1,8 @@
 #include "solver/formfactor/covered_lines.h"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 namespace afterglow {
 
@@ -15,7 +17,7 @@ Index row_of(const LayerScene& scene, std::size_t line, Index lines_per_patch) {
     return first + static_cast<Index>((line - std::size_t{first} * lines_per_patch) % count);
 }
 
-/// Walks a row's covered lines as their numbers come by.
+/// Walks covered lines as their numbers come by.
 struct Cursor {
     std::span<const CoveredLine> left;
 
@@ -26,12 +28,6 @@ struct Cursor {
         return taken;
     }
 };
-using Cursors = std::array<Cursor, block_size>;  ///< by lane
-Cursors first_covered(const PatchBlock& block, const LayeredRows& layer) {
-    Cursors cursors;
-    for (Index lane = 0; lane < block.count; ++lane) cursors[lane] = {layer.lines[block.first + lane]};
-    return cursors;
-}
 
 }  // namespace
 
@@ -56,14 +52,54 @@ CoverUpdate::CoverUpdate(LayeredMatrix& matrix, const LayerScene& scene, RowChan
     changes_.lines = 0;
 }
 
-void CoverUpdate::show_sight(const PatchBlock& block, std::span<const LineChange> changes) {
-    const std::size_t first = scene_.sight.line(block, 0, 0);
-    for (const LineChange& change : changes) by_lane_[(change.line - first) % block.count].push_back(change);
-    for (Index lane = 0; lane < block.count; ++lane) {
-        if (!by_lane_[lane].empty()) show_row(block.first + lane, by_lane_[lane]);
-        by_lane_[lane].clear();
+/// Merges what changed into a block's covered lines.
+void CoverUpdate::show_sight(std::size_t b, std::span<const LineChange> changes) {
+    if (changes.empty()) return;
+    const PatchBlock& block = scene_.sight.blocks()[b];
+    const auto first_line = static_cast<Index>(scene_.sight.line(block, 0, 0));
+    CoveredBlock& covered = matrix_.sight.covered[b];
+    merged_.entries.resize(covered.entries.size() + changes.size());
+    merged_.lines.resize(merged_.entries.size());
+    Merge merge;
+    const auto keep_before = [&](std::size_t line) {
+        for (; merge.next < covered.lines.size() && covered.lines[merge.next].line < line; ++merge.next)
+            keep(covered.lines[merge.next], covered.entries[merge.next], merge);
+    };
+    for (std::size_t c = 0; c < changes.size();) {
+        LineChange change = changes[c];
+        for (++c; c < changes.size() && changes[c].line == change.line; ++c) change.to = changes[c].to;
+        keep_before(change.line);
+        note(block.first + (change.line - first_line) % block.count, change, covered, merge);
     }
+    keep_before(std::numeric_limits<std::size_t>::max());
+    merged_.entries.resize(merge.kept);
+    merged_.lines.resize(merge.kept);
+    std::swap(covered, merged_);
     changes_.lines += changes.size();
+}
+
+void CoverUpdate::keep(const CoveredLine& line, const CoveredEntry& entry, Merge& merge) {
+    merged_.lines[merge.kept] = line;
+    merged_.entries[merge.kept] = entry;
+    ++merge.kept;
+}
+
+/// Puts one line where it belongs in tally, layer and list.
+void CoverUpdate::note(Index row, const LineChange& change, CoveredBlock& covered, Merge& merge) {
+    const std::size_t place = merge.next;
+    const bool known = place < covered.lines.size() && covered.lines[place].line == change.line;
+    // An open line comes from its background, so that need not be looked up.
+    const Index background = known ? covered.lines[place].background : change.from;
+    const Index base =
+        known ? covered.entries[place].base : column_of(matrix_, scene_.lamps, row, background);
+    const Index before = known ? covered.entries[place].now : base;
+    if (known) ++merge.next;
+    const Index now = column_of(matrix_, scene_.lamps, row, change.to);
+    LineTally& tally = matrix_.ledger.tally[row];
+    --tallied(tally, change.from, before != matrix_.nowhere());
+    ++tallied(tally, change.to, now != matrix_.nowhere());
+    if (before != now) changes_.sight.push_back({row, before, now, 1});
+    if (change.to != background) keep({change.line, background, change.to}, {row, base, now, 1}, merge);
 }
 
 void CoverUpdate::show_light(Index line, float contribution) {
@@ -74,15 +110,15 @@ void CoverUpdate::show_light(Index line, float contribution) {
     const Index k = (line - static_cast<Index>(scene_.light.line(block, 0, 0))) / block.count;
     const Index lamp_patch = scene_.light.lamp_patch(row / block_size, k);
     if (!(value > 0) || column_of(matrix_, scene_.lamps, row, lamp_patch) != matrix_.nowhere()) return;
-    std::vector<CoveredLine>& dark = matrix_.light.lines[row];
-    std::vector<CoveredEntry>& entries = matrix_.light.covered[row];
+    std::vector<CoveredLine>& dark = matrix_.light.covered[row / block_size].lines;
+    std::vector<CoveredEntry>& entries = matrix_.light.covered[row / block_size].entries;
     const auto at = std::lower_bound(dark.begin(), dark.end(), line,
                                      [](const CoveredLine& a, Index b) { return a.line < b; });
     const bool was_covered = at != dark.end() && at->line == line, is_covered = !(contribution > 0);
     if (was_covered == is_covered) return;
     const Index nowhere = matrix_.nowhere();
     if (is_covered) {
-        entries.insert(entries.begin() + (at - dark.begin()), {lamp_patch, nowhere, value});
+        entries.insert(entries.begin() + (at - dark.begin()), {row, lamp_patch, nowhere, value});
         dark.insert(at, {line, lamp_patch, sees_inside});
         changes_.light.push_back({row, lamp_patch, nowhere, value});
     } else {
@@ -92,58 +128,13 @@ void CoverUpdate::show_light(Index line, float contribution) {
     }
 }
 
-/// Merges what changed into a row's covered lines.
-void CoverUpdate::show_row(Index row, std::span<const LineChange> changes) {
-    std::vector<CoveredLine>& lines = matrix_.sight.lines[row];
-    std::vector<CoveredEntry>& entries = matrix_.sight.covered[row];
-    lines_.clear();
-    entries_.clear();
-    std::size_t kept = 0;  // of the old ones, so many have been dealt with
-    const auto keep_up_to = [&](std::size_t end) {
-        lines_.insert(lines_.end(), lines.begin() + static_cast<std::ptrdiff_t>(kept),
-                      lines.begin() + static_cast<std::ptrdiff_t>(end));
-        entries_.insert(entries_.end(), entries.begin() + static_cast<std::ptrdiff_t>(kept),
-                        entries.begin() + static_cast<std::ptrdiff_t>(end));
-        kept = end;
-    };
-    for (std::size_t c = 0; c < changes.size();) {
-        LineChange change = changes[c];
-        for (++c; c < changes.size() && changes[c].line == change.line; ++c) change.to = changes[c].to;
-        std::size_t place = kept;
-        while (place < lines.size() && lines[place].line < change.line) ++place;
-        keep_up_to(place);
-        const bool known = place < lines.size() && lines[place].line == change.line;
-        // An open line comes from its background, so that need not be looked up.
-        const Index background = known ? lines[place].background : change.from;
-        const Index base = known ? entries[place].base : column_of(matrix_, scene_.lamps, row, background);
-        note(row, change, known ? entries[place].now : base, {change.line, background, change.to}, base);
-        if (known) ++kept;
-    }
-    keep_up_to(lines.size());
-    lines.assign(lines_.begin(), lines_.end());
-    entries.assign(entries_.begin(), entries_.end());
-}
-
-/// Puts one line where it belongs in tally, layer and list.
-void CoverUpdate::note(Index row, const LineChange& change, Index before, const CoveredLine& line,
-                       Index base) {
-    const Index now = column_of(matrix_, scene_.lamps, row, change.to);
-    LineTally& tally = matrix_.ledger.tally[row];
-    --tallied(tally, change.from, before != matrix_.nowhere());
-    ++tallied(tally, change.to, now != matrix_.nowhere());
-    if (before != now) changes_.sight.push_back({row, before, now, 1});
-    if (change.to == line.background) return;
-    lines_.push_back(line);
-    entries_.push_back({base, now, 1});
-}
-
 void CoverComparison::find_sight(std::size_t b, std::vector<LineChange>& found) const {
     const PatchBlock& block = scene_.sight.blocks()[b];
-    Cursors next = first_covered(block, matrix_.sight);
+    Cursor next{matrix_.sight.covered[b].lines};
     for (Index d = 0; d < scene_.sight.lines_per_patch(); ++d)
         for (Index lane = 0; lane < block.count; ++lane) {
             const auto line = static_cast<Index>(scene_.sight.line(block, d, lane));
-            const CoveredLine* covered = next[lane].take(line);
+            const CoveredLine* covered = next.take(line);
             const Index from =
                 covered != nullptr ? covered->target : scene_.background.background.patch[line];
             if (visible_.patch[line] != from) found.push_back({line, from, visible_.patch[line]});
@@ -152,11 +143,11 @@ void CoverComparison::find_sight(std::size_t b, std::vector<LineChange>& found) 
 
 void CoverComparison::find_light(std::size_t b, std::vector<Index>& found) const {
     const PatchBlock& block = scene_.sight.blocks()[b];
-    Cursors next = first_covered(block, matrix_.light);
+    Cursor next{matrix_.light.covered[b].lines};
     for (Index k = 0; k < scene_.light.lines_per_patch(); ++k)
         for (Index lane = 0; lane < block.count; ++lane) {
             const auto line = static_cast<Index>(scene_.light.line(block, k, lane));
-            const bool covered = next[lane].take(line) != nullptr;
+            const bool covered = next.take(line) != nullptr;
             const bool open = visible_.light_contribution[line] > 0;
             if (covered == open && scene_.background.light_contribution[line] > 0) found.push_back(line);
         }

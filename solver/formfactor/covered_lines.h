@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -25,21 +24,23 @@ class CoverUpdate {
     /// Empties `changes`; keeps references to its arguments.
     CoverUpdate(LayeredMatrix& matrix, const LayerScene& scene, RowChanges& changes);
 
-    /// Sight lines of one block, those of a row by number and time.
-    void show_sight(const PatchBlock& block, std::span<const LineChange> changes);
+    /// Sight lines of one block, by number and time.
+    void show_sight(std::size_t block, std::span<const LineChange> changes);
     /// One light line and what it brings now, 0 where it is blocked.
     void show_light(Index line, float contribution);
 
   private:
-    void show_row(Index row, std::span<const LineChange> changes);
-    void note(Index row, const LineChange& change, Index before, const CoveredLine& line, Index base);
+    /// Which of the covered lines in hand are dealt with, and how many are kept.
+    struct Merge {
+        std::size_t next = 0, kept = 0;
+    };
+    void note(Index row, const LineChange& change, CoveredBlock& covered, Merge& merge);
+    void keep(const CoveredLine& line, const CoveredEntry& entry, Merge& merge);
 
     LayeredMatrix& matrix_;
     const LayerScene& scene_;
     RowChanges& changes_;
-    std::array<std::vector<LineChange>, block_size> by_lane_;
-    std::vector<CoveredLine> lines_;  // of the row in hand
-    std::vector<CoveredEntry> entries_;
+    CoveredBlock merged_;  // room for the block in hand as it will be
 };
 
 /// Looks for what lines show otherwise than the layers do, block by block. Thread-safety: const.

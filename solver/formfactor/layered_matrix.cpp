@@ -96,10 +96,12 @@ void scale_rows(LayeredMatrix& matrix, const LayerScene& scene) {
     matrix.whole_rows.clear();
     const auto lines = static_cast<float>(scene.sight.lines_per_patch());
     const Index layered = matrix.ledger.has_moving_lamps ? 0 : scene.mesh.static_size();
+    std::vector<double> lit_by(matrix.ledger.from_lamps);
+    for (const CoveredBlock& block : matrix.light.covered)
+        for (const CoveredEntry& entry : block.entries) lit_by[entry.row] -= static_cast<double>(entry.value);
     for (Index row = 0; row < layered; ++row) {
         const LineTally& tally = matrix.ledger.tally[row];
-        double lit = matrix.ledger.from_lamps[row];
-        for (const CoveredEntry& entry : matrix.light.covered[row]) lit -= static_cast<double>(entry.value);
+        const double lit = lit_by[row];
         const Index valid = tally.valid(), others = tally.outside + tally.on_others;
         matrix.valid_share[row] = static_cast<float>(valid) / lines;
         matrix.sight.scale[row] = matrix.light.scale[row] = matrix.sky[row] = 0;
@@ -143,6 +145,21 @@ void finish(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& 
     compile_whole(matrix, scene, visible, context);
 }
 
+CountColumns counted(const FormFactorColumns& columns) {
+    CountColumns packed{{0}, {}};
+    packed.entry.reserve(columns.row.size());
+    for (std::size_t column = 0; column + 1 < columns.column_begin.size(); ++column) {
+        for (auto e = columns.column_begin[column]; e < columns.column_begin[column + 1]; ++e) {
+            auto lines = static_cast<std::uint32_t>(columns.value[e]);
+            for (; lines > CountColumns::most_lines; lines -= CountColumns::most_lines)
+                packed.entry.push_back(columns.row[e] << CountColumns::row_shift | CountColumns::most_lines);
+            packed.entry.push_back(columns.row[e] << CountColumns::row_shift | lines);
+        }
+        packed.column_begin.push_back(packed.entry.size());
+    }
+    return packed;
+}
+
 bool by_line(const LineChange& a, const LineChange& b) {
     return a.line < b.line;
 }
@@ -165,6 +182,8 @@ LayeredMatrix make_layered_matrix(const LayerScene& scene, const Context& contex
     const std::size_t patches = scene.mesh.size();
     if (patches * std::max(scene.sight.lines_per_patch(), scene.light.lines_per_patch()) >= no_index)
         throw Error(ErrorKind::too_large, "rays", "more than 2^32 lines cannot be numbered");
+    if (patches > CountColumns::most_rows)
+        throw Error(ErrorKind::too_large, "patches", "the layers count 16 million at most");
     LayeredMatrix matrix;
     matrix.sky.assign(patches, 0);
     matrix.valid_share.assign(patches, 0);
@@ -174,11 +193,11 @@ LayeredMatrix make_layered_matrix(const LayerScene& scene, const Context& contex
     if (!matrix.ledger.has_moving_lamps) count_base(matrix, scene, context);
     for (LayeredRows* layer : {&matrix.sight, &matrix.light}) {
         layer->base.row_begin.resize(patches + 1, layer->base.column.size());
-        layer->columns = columns_of(layer->base, context);
-        layer->covered.resize(patches);
-        layer->lines.resize(patches);
+        layer->covered.resize(scene.sight.static_blocks());
         layer->scale.assign(patches, 0);
     }
+    matrix.sight_columns = counted(columns_of(matrix.sight.base, context));
+    matrix.light_columns = columns_of(matrix.light.base, context);
     return matrix;
 }
 
@@ -189,7 +208,7 @@ std::span<const RowChanges> show(LayeredMatrix& matrix, const LayerScene& scene,
         LineChanges found;
         comparison.find_sight(b, found.sight);
         comparison.find_light(b, found.light);
-        layers.show_sight(scene.sight.blocks()[b], found.sight);
+        layers.show_sight(b, found.sight);
         for (const Index line : found.light) layers.show_light(line, visible.light_contribution[line]);
     });
     finish(matrix, scene, visible, context);
@@ -208,7 +227,7 @@ std::span<const RowChanges> show(LayeredMatrix& matrix, const LayerScene& scene,
             const LineChange first{static_cast<Index>(scene.sight.line(block, direction, 0)), 0, 0};
             return std::lower_bound(changes.sight.begin(), changes.sight.end(), first, by_line);
         };
-        layers.show_sight(block, {from(0), from(scene.sight.lines_per_patch())});
+        layers.show_sight(b, {from(0), from(scene.sight.lines_per_patch())});
         const auto light_from = [&](Index k) {
             return std::lower_bound(changes.light.begin(), changes.light.end(),
                                     static_cast<Index>(scene.light.line(block, k, 0)));
@@ -230,23 +249,26 @@ std::vector<Rgb> lamp_irradiance(const LayeredMatrix& matrix, const Lamps& lamps
                                  std::span<const Rgb> emission, const Context& context) {
     std::vector<Rgb> irradiance(matrix.rows(), Rgb(0));
     // By columns: each lamp reaches the rows that have an entry for it, in whichever layer.
-    for (const LayeredRows* layer : {&matrix.sight, &matrix.light})
-        for (const Index lamp : lamps.patches)
-            for (auto e = layer->columns.column_begin[lamp]; e < layer->columns.column_begin[lamp + 1]; ++e) {
-                const Index row = layer->columns.row[e];
-                irradiance[row] += layer->scale[row] * layer->columns.value[e] * emission[lamp];
-            }
+    for (const Index lamp : lamps.patches) {
+        for_column(matrix.sight_columns, lamp, [&](Index row, float lines) {
+            irradiance[row] += matrix.sight.scale[row] * lines * emission[lamp];
+        });
+        for_column(matrix.light_columns, lamp, [&](Index row, float value) {
+            irradiance[row] += matrix.light.scale[row] * value * emission[lamp];
+        });
+    }
     const auto light_of = [&](Index column) {
         const bool is_lamp = column != matrix.nowhere() && lamps.lamp_of_patch[column] != no_index;
         return is_lamp ? emission[column] : Rgb(0);
     };
-    context.for_chunks(matrix.rows(), rows_per_chunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = begin; row < end; ++row)
-            for (const LayeredRows* layer : {&matrix.sight, &matrix.light})
-                for (const CoveredEntry& entry : layer->covered[row])
-                    irradiance[row] +=
-                        layer->scale[row] * entry.value * (light_of(entry.now) - light_of(entry.base));
-    });
+    context.for_chunks(matrix.sight.covered.size(), blocks_per_chunk,
+                       [&](std::size_t begin, std::size_t end) {
+                           for (std::size_t b = begin; b < end; ++b)
+                               for (const LayeredRows* layer : {&matrix.sight, &matrix.light})
+                                   for (const CoveredEntry& entry : layer->covered[b].entries)
+                                       irradiance[entry.row] += layer->scale[entry.row] * entry.value *
+                                                                (light_of(entry.now) - light_of(entry.base));
+                       });
     for (std::size_t k = 0; k < matrix.whole_rows.size(); ++k)
         for (auto e = matrix.whole.row_begin[k]; e < matrix.whole.row_begin[k + 1]; ++e)
             irradiance[matrix.whole_rows[k]] += matrix.whole.value[e] * light_of(matrix.whole.column[e]);

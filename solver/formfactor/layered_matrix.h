@@ -11,6 +11,7 @@ namespace afterglow {
 /// What a line of a static patch counts for while it does not see its background. The columns of lines that
 /// count for no patch are `nowhere`.
 struct CoveredEntry {
+    Index row = 0;
     Index base = 0;  ///< the column that the base counts it in
     Index now = 0;   ///< the column that it counts in at this time
     float value = 0;
@@ -23,14 +24,50 @@ struct CoveredLine {
     Index target = 0;      ///< what it sees at this time: patch, sees_nothing or sees_inside
 };
 
+/// The covered lines of a block of patches, by number. Neighbours' lines stand together, and are read and
+/// rewritten in one stream.
+struct CoveredBlock {
+    std::vector<CoveredEntry> entries;
+    std::vector<CoveredLine> lines;  ///< likewise: which line each entry is
+};
+
+/// Columns of a matrix of counted lines: an entry is its row times 256 plus a count of 1 to 255; of more
+/// lines there are more entries. Half the bytes of FormFactorColumns, and bytes are what pushing waits for.
+struct CountColumns {
+    std::vector<std::uint64_t> column_begin;  ///< size columns + 1
+    std::vector<std::uint32_t> entry;         ///< by row within a column
+
+    static constexpr std::uint32_t most_lines = 255;
+    static constexpr int row_shift = 8;
+    static constexpr std::size_t most_rows = std::size_t{1} << (32 - row_shift);
+};
+
+/// Calls `take(row, value)` for each entry of a column, in order.
+template <class Take>
+void for_column(const CountColumns& columns, Index column, const Take& take) {
+    const std::uint64_t end = columns.column_begin[column + 1];
+    for (std::uint64_t e = columns.column_begin[column]; e < end; ++e)
+        take(columns.entry[e] >> CountColumns::row_shift,
+             static_cast<float>(static_cast<int>(columns.entry[e] & CountColumns::most_lines)));
+}
+template <class Take>
+void for_column(const FormFactorColumns& columns, Index column, const Take& take) {
+    const std::uint64_t end = columns.column_begin[column + 1];
+    for (std::uint64_t e = columns.column_begin[column]; e < end; ++e) take(columns.row[e], columns.value[e]);
+}
+
 /// Rows of one kind of lines before they are scaled: what is there without actors, which never changes, and
 /// what actors cover. Row i of F gets scale[i] (base_i + Σ value (column now − column base)).
 struct LayeredRows {
     FormFactorMatrix base;
-    FormFactorColumns columns;                       ///< of the base
-    std::vector<std::vector<CoveredEntry>> covered;  ///< by row, in the order of lines
-    std::vector<std::vector<CoveredLine>> lines;     ///< likewise: which line each entry is
-    std::vector<float> scale;                        ///< by row
+    std::vector<CoveredBlock> covered;  ///< by block of static patches
+    std::vector<float> scale;           ///< by row
+
+    /// What is covered of the block that a row belongs to; nothing of a moving patch's.
+    [[nodiscard]] std::span<const CoveredEntry> covered_near(std::size_t row) const {
+        const std::size_t block = row / block_size;
+        return block < covered.size() ? covered[block].entries : std::span<const CoveredEntry>{};
+    }
 };
 
 /// A line of a row that counted in one column and counts in another.
@@ -51,9 +88,11 @@ struct RowChanges {
 /// `make_layered_matrix` and `show` write it.
 struct LayeredMatrix {
     LayeredRows sight, light;
-    std::vector<Index> whole_rows;  ///< which rows are whole, increasing; the layers scale them by 0
-    FormFactorMatrix whole;         ///< row k belongs to patch whole_rows[k]
-    std::vector<float> sky;         ///< as in FormFactors
+    CountColumns sight_columns;       ///< of the base
+    FormFactorColumns light_columns;  ///< likewise
+    std::vector<Index> whole_rows;    ///< which rows are whole, increasing; the layers scale them by 0
+    FormFactorMatrix whole;           ///< row k belongs to patch whole_rows[k]
+    std::vector<float> sky;           ///< as in FormFactors
     std::vector<float> valid_share;
     std::vector<double> row_sum;  ///< Σ_j F_ij by row
 
@@ -83,7 +122,7 @@ struct LayerScene {
 };
 
 /// The layers with all actors away; the rows of moving patches are still missing. Errors: too_large past 2³²
-/// lines; cancelled.
+/// lines or 2²⁴ patches; cancelled.
 LayeredMatrix make_layered_matrix(const LayerScene& scene, const Context& context);
 
 /// Brings the layers to what lines see now, comparing all static ones with what is shown. F is then that of

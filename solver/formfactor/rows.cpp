@@ -62,17 +62,21 @@ class RowCompiler {
     LineTally count_lines(const PatchBlock& block, Index lane, const ByLightLines& by_light_lines,
                           RowCounter& row) const {
         LineTally tally;
-        for (Index d = 0; d < seen_.directions; ++d) {
+        // Lines that are one and the same are looked at once.
+        const Index different = std::min(lines_.different_lines(block), seen_.directions);
+        const Index each = seen_.directions / different, once_more = seen_.directions % different;
+        for (Index d = 0; d < different; ++d) {
             const Index target = seen_.visible[lines_.line(block, d, lane)];
+            const Index lines = each + (d < once_more ? 1 : 0);
             if (target == sees_nothing) {
-                ++tally.outside;
+                tally.outside += lines;
             } else if (target == sees_inside) {
-                ++tally.buried;
+                tally.buried += lines;
             } else if (by_light_lines(target)) {
-                ++tally.on_lamps;
+                tally.on_lamps += lines;
             } else {
-                ++tally.on_others;
-                row.add(target, 1);
+                tally.on_others += lines;
+                row.add(target, static_cast<float>(lines));
             }
         }
         return tally;

@@ -31,7 +31,7 @@ struct ResidualConfig {
     /// Nothing is pushed whose residual is below this share of what would be good enough, in (0, 1].
     double least_share = 0.5;
     /// Rounds made before what actors cover hears of them and the residual is computed exactly, 1 or more.
-    int rounds_between_surveys = 16;
+    int rounds_between_surveys = 32;
     /// A round whose columns hold at least this share of all entries is made as a sweep: all patches are
     /// pushed, and the rows gather them in parallel.
     double sweep_share = 0.25;
@@ -55,7 +55,6 @@ struct ResidualState {
     std::vector<DoubleLanes> by_light;  ///< likewise of the light layer
     std::vector<DoubleLanes> by_whole;  ///< by whole row, of this moment
     std::vector<Rgb> irradiance;        ///< H, W/m², by patch: what is shown is E + ρH
-    std::vector<Rgb> residual;          ///< r, W/m², by patch
     std::uint64_t pushes = 0;           ///< patches whose radiosity was changed, over all rounds
     std::uint64_t rounds = 0;           ///< of them, or sweeps
     std::uint64_t sweeps = 0;
@@ -66,9 +65,11 @@ struct ResidualState {
 
     /// Room to work in that is kept, since it takes longer to get than to use; means nothing between calls.
     struct Workspace {
-        std::vector<DoubleLanes> change;        ///< of B, by patch, since the sums were right
-        std::vector<std::uint8_t> is_pushed;    ///< by patch: whether there is any
+        std::vector<Lanes> change;              ///< of B, by patch, since the sums were right
         std::vector<Lanes> by_sight, by_light;  ///< what the sums of the layers are still to receive
+        std::vector<Lanes> residual;            ///< r, W/m², by patch, without what is still to be received
+        std::vector<Lanes> of_sight, of_light;  ///< by row: which share of it gets into the residual
+        std::vector<float> magnitude;           ///< largest channel of |r| with it
         std::vector<Index> place_of_whole;      ///< by row: where it stands among the whole ones
     } workspace;
 };

@@ -21,8 +21,10 @@ constexpr int growth = 4;
 struct Window {
     SweptActors actors;
     std::vector<LineEvents> sight;
+    std::vector<LineEvents> own;  ///< of actors' own lines, where they can be looked ahead along
     LineEvents light;
-    Index directions = 0;  ///< of every patch; 0: the light lines are missing, too
+    bool looks_along_own = false;  ///< ahead, that is
+    Index directions = 0;          ///< of every patch; 0: the light lines are missing, too
 };
 
 class Events : public VisibilityStrategy {
@@ -38,6 +40,7 @@ class Events : public VisibilityStrategy {
             throw Error(ErrorKind::invalid_input, "frames_per_window", "must be 1 to 4096");
         if (config.frames_of_first_window < 1)
             throw Error(ErrorKind::invalid_input, "frames_of_first_window", "must be 1 or more");
+        trees_[furniture] = make_face_tree(world.bodies[furniture]);
     }
 
     [[nodiscard]] bool needs_background() const override { return true; }
@@ -58,7 +61,7 @@ class Events : public VisibilityStrategy {
             move_to(scene, visible);
         if (range.last > window_->directions) extend(scene, range.last, visible, context);
         shown_ = scene.frame;
-        std::uint64_t rays = own_.update(scene, range, visible, context);
+        std::uint64_t rays = window_->looks_along_own ? 0 : own_.update(scene, range, visible, context);
         if (range.first == 0) rays += own_light_.update(scene, visible, context);
         return rays;
     }
@@ -67,7 +70,8 @@ class Events : public VisibilityStrategy {
     void open_window(int frame) {
         if (!start_) start_ = frame;
         window_.emplace(
-            Window{SweptActors(world_, trees_, clock_, event_window(frame, *start_, config_)), {}, {}, 0});
+            Window{SweptActors(world_, trees_, clock_, event_window(frame, *start_, config_)), {}, {}, {}});
+        window_->looks_along_own = can_look_ahead_along_own_lines(window_->actors, trees_[furniture]);
         shown_.reset();
         forget_changes();
     }
@@ -101,10 +105,24 @@ class Events : public VisibilityStrategy {
     /// Shows one side of a frame's events: what they lead to or, to go back, what they come from.
     void show_all(int f, Shown shown, const LineScene& scene, VisibleLines& visible) const {
         for (const LineEvents& events : window_->sight) show_patches(events.at(f), shown, visible);
+        for (const LineEvents& events : window_->own) show_own(events.at(f), shown, scene, visible);
         show_lamps(window_->light.at(f), shown, scene, visible);
     }
     static void show_patches(std::span<const LineEvent> events, Shown shown, VisibleLines& visible) {
         for (const LineEvent& event : events) visible.patch[event.line] = event.*shown;
+    }
+    /// Lines that are one and the same see the same.
+    static void show_own(std::span<const LineEvent> events, Shown shown, const LineScene& scene,
+                         VisibleLines& visible) {
+        const SightLines& sight = scene.sight;
+        auto block = sight.blocks().begin() + static_cast<std::ptrdiff_t>(sight.static_blocks());
+        for (const LineEvent& event : events) {
+            while (event.line >= sight.line(*block, sight.lines_per_patch(), 0)) ++block;
+            const std::size_t next = std::size_t{sight.different_lines(*block)} * block->count;
+            for (std::size_t line = event.line; line < sight.line(*block, sight.lines_per_patch(), 0);
+                 line += next)
+                visible.patch[line] = event.*shown;
+        }
     }
     static void show_lamps(std::span<const LineEvent> events, Shown shown, const LineScene& scene,
                            VisibleLines& visible) {
@@ -126,15 +144,21 @@ class Events : public VisibilityStrategy {
         const DirectionRange range{window.directions, last};
         if (first_time) window.light = find_light_events(events, context);
         window.sight.push_back(find_line_events(events, range, context));
+        if (window.looks_along_own) {
+            learn_alone(scene, last, context);
+            window.own.push_back(find_own_line_events(events, alone_, range, context));
+        }
         window.directions = last;
 
         show_background(scene, range, visible);
+        if (window.looks_along_own) show_alone(scene, range, visible);
         if (first_time)
             std::copy(scene.background.light_contribution.begin(), scene.background.light_contribution.end(),
                       visible.light_contribution.begin());
         const FrameSpan frames = window.actors.frames();
         for (int f = 0; f <= scene.frame - frames.first; ++f) {
             show_patches(window.sight.back().at(f), &LineEvent::to, visible);
+            if (window.looks_along_own) show_own(window.own.back().at(f), &LineEvent::to, scene, visible);
             if (first_time) show_lamps(window.light.at(f), &LineEvent::to, scene, visible);
         }
         window_.emplace(std::move(window));
@@ -148,6 +172,32 @@ class Events : public VisibilityStrategy {
             const auto last = static_cast<std::ptrdiff_t>(scene.sight.line(block, range.last, 0));
             std::copy(scene.background.background.patch.begin() + first,
                       scene.background.background.patch.begin() + last, visible.patch.begin() + first);
+        }
+    }
+
+    void learn_alone(const LineScene& scene, Index last, const Context& context) {
+        const std::size_t first = scene.sight.static_blocks();
+        alone_.reserve(scene.sight, scene.mesh);
+        context.for_chunks(scene.sight.blocks().size() - first, 1, [&](std::size_t begin, std::size_t) {
+            alone_.extend(scene.sight, scene.mesh, scene.caster, first + begin, last);
+        });
+    }
+    void show_alone(const LineScene& scene, const DirectionRange& range, VisibleLines& visible) const {
+        for (std::size_t b = scene.sight.static_blocks(); b < scene.sight.blocks().size(); ++b) {
+            const PatchBlock& block = scene.sight.blocks()[b];
+            const Index different = scene.sight.different_lines(block);
+            const auto lines = [&](Index d) {
+                return visible.patch.begin() + static_cast<std::ptrdiff_t>(scene.sight.line(block, d, 0));
+            };
+            for (Index d = range.first; d < range.last; ++d) {
+                // Those shown already are where they should be, and the others follow them.
+                const std::size_t at = LinesAlone::index(scene.sight, scene.mesh, block, d % different);
+                if (d % different < range.first)
+                    std::copy_n(lines(d % different), block.count, lines(d));
+                else
+                    std::copy_n(alone_.lines().patch.begin() + static_cast<std::ptrdiff_t>(at), block.count,
+                                lines(d));
+            }
         }
     }
 
@@ -169,6 +219,7 @@ class Events : public VisibilityStrategy {
     bool changes_known_ = false;  ///< since somebody first asked, unless lines were brought anywhere at once
     LineChanges changes_;
     OwnLines own_;
+    LinesAlone alone_;
     OwnLightLines own_light_;
 };
 

@@ -10,6 +10,8 @@ namespace afterglow {
 namespace {
 
 constexpr std::size_t blocks_per_chunk = 4;
+// A line of an actor sweeps past much of the furniture, and looks at all that it may meet.
+constexpr std::size_t most_faces_of_furniture = 2048;
 
 struct TimedEvent {
     int frame;
@@ -25,8 +27,10 @@ class Targets {
     explicit Targets(const EventScene& scene)
         : scene_(scene), seen_(static_cast<std::size_t>(scene.actors.frames().count())) {}
 
-    /// By frame, from the buffer's first to its last for this lane.
-    std::span<const Index> of(const TimeBuffer& buffer, std::size_t lane, const Ray& ray, Index background) {
+    /// By frame, from the buffer's first to its last for this lane. The ray belongs to a body and is given in
+    /// its frame.
+    std::span<const Index> of(const TimeBuffer& buffer, std::size_t lane, const Ray& ray, Index body,
+                              Index background) {
         const int first = buffer.first(lane), last = buffer.last(lane);
         const auto faces = buffer.faces(lane);
         const auto depths_m = buffer.depths_m(lane);
@@ -37,52 +41,52 @@ class Targets {
             if (number == no_index)
                 std::fill(at(f), at(end), background);
             else
-                look_up(scene_.actors.face(number), depths_m, ray, f, end);
+                look_up({scene_, scene_.actors.face(number), depths_m, ray, body}, f, end);
             f = end;
         }
         return {seen_.data() + first, static_cast<std::size_t>(last - first + 1)};
     }
 
   private:
-    /// One ray on one face, which does not turn.
+    /// One ray on one face.
     struct Sight {
-        const SweptActors& actors;
-        const PatchMesh& mesh;
+        const EventScene& scene;
         SweptActors::Face face;
         std::span<const float> depths_m;  ///< by frame
-        glm::mat3 to_body;
-        Vec3 origin, direction;  ///< turned as the body's axes are, from the world's origin
-        Side side;
+        Ray ray;
+        Index body;  ///< in whose frame it is
 
-        Sight(const EventScene& scene, const SweptActors::Face& on, std::span<const float> depths,
-              const Ray& ray, int frame)
-            : actors(scene.actors),
-              mesh(scene.mesh),
-              face(on),
-              depths_m(depths),
-              to_body(glm::transpose(glm::mat3_cast(actors.pose(face.body, frame).rotation))),
-              origin(to_body * ray.origin),
-              direction(to_body * ray.direction),
-              side(glm::dot(direction, face.shape.normal) < 0 ? Side::front : Side::back) {}
-
+        [[nodiscard]] Pose pose(Index of, int frame) const {
+            return of == furniture ? Pose{} : scene.actors.pose(of, frame);
+        }
+        /// Whether both bodies go on as they came.
+        [[nodiscard]] bool is_steady_after(int frame) const {
+            const auto steady = [&](Index of) {
+                return of == furniture || scene.actors.is_steady_after(of, frame);
+            };
+            return steady(body) && steady(face.body);
+        }
         /// The patch that is seen in a frame.
         [[nodiscard]] Index target(int frame) const {
-            const Vec3 body_at = to_body * actors.pose(face.body, frame).translation;
-            const Vec3 place = origin + depths_m[static_cast<std::size_t>(frame)] * direction - body_at;
-            const Index patch = mesh.patch_at(face.body, face.shape.triangle_at(place), side, place);
-            return patch == no_index ? sees_inside : patch;
+            const Pose from = pose(body, frame), to = pose(face.body, frame);
+            const Quat back = glm::conjugate(to.rotation);
+            Ray seen{back * (from.point(ray.origin) - to.translation), back * from.direction(ray.direction)};
+            Hit hit;
+            hit.body = face.body;
+            hit.distance = depths_m[static_cast<std::size_t>(frame)];
+            hit.side = glm::dot(seen.direction, face.shape.normal) < 0 ? Side::front : Side::back;
+            hit.triangle = face.shape.triangle_at(seen.origin + hit.distance * seen.direction);
+            return target_of(hit, seen, scene.mesh);
         }
     };
 
     std::vector<Index>::iterator at(int frame) { return seen_.begin() + frame; }
 
-    /// Frames [first, end) in which one face is seen, part by part of its actor's way.
-    void look_up(const SweptActors::Face& face, std::span<const float> depths_m, const Ray& ray, int first,
-                 int end) {
+    /// Frames [first, end) in which one face is seen, part by part of the actors' ways.
+    void look_up(const Sight& sight, int first, int end) {
         while (first < end) {
             int last = first;
-            while (last + 1 < end && scene_.actors.is_steady_after(face.body, last)) ++last;
-            const Sight sight(scene_, face, depths_m, ray, first);
+            while (last + 1 < end && sight.is_steady_after(last)) ++last;
             *at(first) = sight.target(first);
             if (last > first) *at(last) = sight.target(last);
             fill_between(sight, first, last);
@@ -154,13 +158,13 @@ void check_size(std::size_t lines) {
                     "events count 4 billion lines at most; use fewer or larger patches");
 }
 
-/// Calls `find(first block, end, part)` for chunks of the blocks of static patches.
+/// Calls `find(first block, end, part)` for chunks of the blocks [first, last).
 template <class Find>
-LineEvents collect(const EventScene& scene, const Context& context, const Find& find) {
-    const std::size_t blocks = scene.sight.static_blocks();
-    std::vector<Part> parts((blocks + blocks_per_chunk - 1) / blocks_per_chunk);
-    context.for_chunks(blocks, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
-        find(begin, end, parts[begin / blocks_per_chunk]);
+LineEvents collect(const EventScene& scene, std::size_t first, std::size_t last, const Context& context,
+                   const Find& find) {
+    std::vector<Part> parts((last - first + blocks_per_chunk - 1) / blocks_per_chunk);
+    context.for_chunks(last - first, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
+        find(first + begin, first + end, parts[begin / blocks_per_chunk]);
     });
     return by_frame(parts, scene.actors.frames().count(), context);
 }
@@ -182,7 +186,29 @@ void find_in_block(const EventScene& scene, std::size_t b, const DirectionRange&
             if (buffer.last(lane) < buffer.first(lane)) continue;
             const Index behind = background.patch[line + lane];
             put_events(static_cast<Index>(line + lane), behind, buffer.first(lane),
-                       targets.of(buffer, lane, rays.ray(lane), behind), frames, part);
+                       targets.of(buffer, lane, rays.ray(lane), furniture, behind), frames, part);
+        }
+    }
+}
+
+void find_own_in_block(const EventScene& scene, const LinesAlone& alone, std::size_t b,
+                       const DirectionRange& range, TimeBuffer& buffer, Targets& targets, Part& part) {
+    const int frames = scene.actors.frames().count();
+    const PatchBlock& block = scene.sight.blocks()[b];
+    RayPacket rays;
+    for (Index d = range.first; d < std::min(range.last, scene.sight.different_lines(block)); ++d) {
+        scene.sight.rays(b, d, Pose{}, rays);
+        const std::size_t at = LinesAlone::index(scene.sight, scene.mesh, block, d);
+        std::copy_n(alone.lines().distance.begin() + static_cast<std::ptrdiff_t>(at), block.count,
+                    rays.far.begin());
+        buffer.clear(rays);
+        scene.actors.trace_from(block.body, rays, buffer);
+        for (std::size_t lane = 0; lane < block.count; ++lane) {
+            if (buffer.last(lane) < buffer.first(lane)) continue;
+            const Index behind = alone.lines().patch[at + lane];
+            put_events(static_cast<Index>(scene.sight.line(block, d, static_cast<Index>(lane))), behind,
+                       buffer.first(lane), targets.of(buffer, lane, rays.ray(lane), block.body, behind),
+                       frames, part);
         }
     }
 }
@@ -214,19 +240,38 @@ void find_light_in_block(const EventScene& scene, std::size_t b, HiddenFrames& h
 
 LineEvents find_line_events(const EventScene& scene, const DirectionRange& range, const Context& context) {
     check_size(scene.background.background.patch.size());
-    return collect(scene, context, [&](std::size_t begin, std::size_t end, Part& part) {
-        TimeBuffer buffer(scene.actors.frames().count());
-        Targets targets(scene);
-        for (std::size_t b = begin; b < end; ++b) find_in_block(scene, b, range, buffer, targets, part);
-    });
+    return collect(scene, 0, scene.sight.static_blocks(), context,
+                   [&](std::size_t begin, std::size_t end, Part& part) {
+                       TimeBuffer buffer(scene.actors.frames().count());
+                       Targets targets(scene);
+                       for (std::size_t b = begin; b < end; ++b)
+                           find_in_block(scene, b, range, buffer, targets, part);
+                   });
+}
+
+bool can_look_ahead_along_own_lines(const SweptActors& actors, const FaceTree& furniture_tree) {
+    return !actors.any_turns() && furniture_tree.faces.size() <= most_faces_of_furniture;
+}
+
+LineEvents find_own_line_events(const EventScene& scene, const LinesAlone& alone, const DirectionRange& range,
+                                const Context& context) {
+    check_size(std::size_t{scene.mesh.size()} * scene.sight.lines_per_patch());
+    return collect(scene, scene.sight.static_blocks(), scene.sight.blocks().size(), context,
+                   [&](std::size_t begin, std::size_t end, Part& part) {
+                       TimeBuffer buffer(scene.actors.frames().count());
+                       Targets targets(scene);
+                       for (std::size_t b = begin; b < end; ++b)
+                           find_own_in_block(scene, alone, b, range, buffer, targets, part);
+                   });
 }
 
 LineEvents find_light_events(const EventScene& scene, const Context& context) {
     check_size(scene.background.light_contribution.size());
-    return collect(scene, context, [&](std::size_t begin, std::size_t end, Part& part) {
-        HiddenFrames hidden(scene.actors.frames().count());
-        for (std::size_t b = begin; b < end; ++b) find_light_in_block(scene, b, hidden, part);
-    });
+    return collect(scene, 0, scene.sight.static_blocks(), context,
+                   [&](std::size_t begin, std::size_t end, Part& part) {
+                       HiddenFrames hidden(scene.actors.frames().count());
+                       for (std::size_t b = begin; b < end; ++b) find_light_in_block(scene, b, hidden, part);
+                   });
 }
 
 }  // namespace afterglow

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/visibility/lines_alone.h"
 #include "solver/visibility/static_pass.h"
 #include "solver/visibility/swept_actors.h"
 
@@ -43,6 +44,16 @@ struct EventScene {
 /// The events of the static patches' sight lines in a range of directions, whose background must be known.
 /// The same for any number of threads. Errors: too_large where there are more than 2³² lines; cancelled.
 LineEvents find_line_events(const EventScene& scene, const DirectionRange& range, const Context& context);
+
+/// Whether the lines of actors' patches can be looked ahead along: no actor turns, and the furniture, whose
+/// tree must be among the actors', is so simple that it costs less than tracing them in every frame.
+bool can_look_ahead_along_own_lines(const SweptActors& actors, const FaceTree& furniture_tree);
+
+/// The events of actors' patches' sight lines in a range of directions, of lines that are one and the same
+/// once. The first frame's lead there from what they see of their own body, `alone`, which must be known that
+/// far. Errors: likewise.
+LineEvents find_own_line_events(const EventScene& scene, const LinesAlone& alone, const DirectionRange& range,
+                                const Context& context);
 
 /// The events of the static patches' light lines that end on static lamps: hidden or not. Errors: likewise.
 LineEvents find_light_events(const EventScene& scene, const Context& context);

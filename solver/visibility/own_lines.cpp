@@ -25,12 +25,10 @@ void OwnLines::forget_what_moved(const LineScene& scene) {
     const std::size_t first = scene.sight.static_blocks();
     if (known_.empty()) {
         known_.resize(scene.sight.blocks().size() - first);
-        const std::size_t lines = index(scene, {scene.mesh.size(), 0, 1}, 0);
-        for (LineTargets* kept : {&alone_, &background_}) {
-            kept->patch.resize(lines);
-            kept->distance.resize(lines);
-        }
-        all_.resize(lines);
+        alone_.reserve(scene.sight, scene.mesh);
+        background_.patch.resize(alone_.size());
+        background_.distance.resize(alone_.size());
+        all_.resize(alone_.size());
     }
     actors_.place(scene.caster);
     if (!actors_.any_moved()) return;
@@ -44,15 +42,14 @@ std::uint64_t OwnLines::learn(const LineScene& scene, std::size_t block, Index l
     const PatchBlock& b = scene.sight.blocks()[block];
     Known& known = known_[block - scene.sight.static_blocks()];
     last = std::min(last, scene.sight.different_lines(b));
-    std::uint64_t rays = 0;
+    std::uint64_t rays = alone_.extend(scene.sight, scene.mesh, scene.caster, block, last);
     LinePacket lines;
     for (Index d = known.all; d < last; ++d) {
         const std::size_t at = index(scene, b, d);
         const auto offset = static_cast<std::ptrdiff_t>(at);
-        if (d >= known.alone) rays += look_alone(scene, block, d, at);
         scene.sight.rays(block, d, scene.caster.pose(b.body), lines.rays);
         if (d >= known.background) {
-            std::copy_n(alone_.distance.begin() + offset, b.count, lines.rays.far.begin());
+            std::copy_n(alone_.lines().distance.begin() + offset, b.count, lines.rays.far.begin());
             rays += look_at_furniture(scene, lines, at);
         }
         std::copy_n(background_.patch.begin() + offset, b.count, all_.begin() + offset);
@@ -64,20 +61,8 @@ std::uint64_t OwnLines::learn(const LineScene& scene, std::size_t block, Index l
                 rays += static_cast<std::uint64_t>(
                     std::popcount(actors_.look(lines, body, scene.mesh, scene.caster, &all_[at])));
     }
-    known = {std::max(known.alone, last), std::max(known.background, last), std::max(known.all, last)};
+    known = {std::max(known.background, last), std::max(known.all, last)};
     return rays;
-}
-
-std::uint64_t OwnLines::look_alone(const LineScene& scene, std::size_t block, Index d, std::size_t at) {
-    RayPacket rays;
-    HitPacket hits;
-    scene.sight.rays(block, d, Pose{}, rays);
-    scene.caster.nearest(rays, scene.sight.blocks()[block].body, hits);
-    for (std::size_t lane = 0; lane < rays.count; ++lane) {
-        alone_.patch[at + lane] = target_of(hits[lane], rays.ray(lane), scene.mesh);
-        alone_.distance[at + lane] = hits[lane].distance;
-    }
-    return rays.count;
 }
 
 std::uint64_t OwnLines::look_at_furniture(const LineScene& scene, const LinePacket& lines, std::size_t at) {
@@ -86,8 +71,8 @@ std::uint64_t OwnLines::look_at_furniture(const LineScene& scene, const LinePack
     for (std::size_t lane = 0; lane < lines.rays.count; ++lane) {
         const bool met = hits[lane].body != no_index;
         background_.patch[at + lane] =
-            met ? target_of(hits[lane], lines.rays.ray(lane), scene.mesh) : alone_.patch[at + lane];
-        background_.distance[at + lane] = met ? hits[lane].distance : alone_.distance[at + lane];
+            met ? target_of(hits[lane], lines.rays.ray(lane), scene.mesh) : alone_.lines().patch[at + lane];
+        background_.distance[at + lane] = met ? hits[lane].distance : alone_.lines().distance[at + lane];
     }
     return lines.rays.count;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/visibility/lines_alone.h"
 #include "solver/visibility/placed_actors.h"
 #include "solver/visibility/strategy.h"
 
@@ -21,28 +22,24 @@ class OwnLines {
                          const Context& context);
 
   private:
-    /// How many directions of a block are known: of the body alone, with the furniture, with all.
+    /// How many directions of a block are known: with the furniture, with all.
     struct Known {
-        Index alone = 0, background = 0, all = 0;
+        Index background = 0, all = 0;
     };
     void forget_what_moved(const LineScene& scene);
     std::uint64_t learn(const LineScene& scene, std::size_t block, Index last);
-    [[nodiscard]] std::uint64_t look_alone(const LineScene& scene, std::size_t block, Index d,
-                                           std::size_t at);
     [[nodiscard]] std::uint64_t look_at_furniture(const LineScene& scene, const LinePacket& lines,
                                                   std::size_t at);
     void show(const LineScene& scene, std::size_t block, const DirectionRange& range,
               VisibleLines& visible) const;
-    /// Where a block's lines of a direction stand in what is kept.
     [[nodiscard]] static std::size_t index(const LineScene& scene, const PatchBlock& block, Index d) {
-        return std::size_t{block.first - scene.mesh.static_size()} * scene.sight.different_lines(block) +
-               std::size_t{d} * block.count;
+        return LinesAlone::index(scene.sight, scene.mesh, block, d);
     }
 
     PlacedActors actors_;
     std::vector<Known> known_;  ///< by block, the first actor's first
-    LineTargets alone_;         ///< what each line meets of its own body
-    LineTargets background_;    ///< of its own body and the furniture
+    LinesAlone alone_;
+    LineTargets background_;  ///< of its own body and the furniture
     std::vector<Index> all_;
 };
 

@@ -16,7 +16,11 @@ ActorTrees make_actor_trees(const World& world) {
 
 SweptActors::SweptActors(const World& world, const ActorTrees& trees, const FrameClock& clock,
                          const FrameSpan& frames)
-    : trees_(&trees), frames_(frames), poses_(world.bodies.size()), steady_after_(world.bodies.size()) {
+    : trees_(&trees),
+      frames_(frames),
+      poses_(world.bodies.size()),
+      parts_(world.bodies.size()),
+      steady_after_(world.bodies.size()) {
     for (Index b = 0; b < world.bodies.size(); ++b) {
         first_face_.push_back(static_cast<Index>(body_of_face_.size()));
         body_of_face_.insert(body_of_face_.end(), trees[b].faces.size(), b);
@@ -31,6 +35,7 @@ SweptActors::SweptActors(const World& world, const ActorTrees& trees, const Fram
             part.frames.last -= frames.first;
             if (part.motion != Motion::turning)
                 std::fill_n(steady_after_[b].begin() + part.frames.first, part.frames.count() - 1, 1);
+            parts_[b].push_back(part);
             if (trees[b].nodes.empty()) continue;
             swept.sweeps.push_back(sweep_of(part, b));
             swept.box.add(swept.sweeps.back().box);
@@ -123,6 +128,53 @@ void SweptActors::trace_near(const RayPacket& rays, Buffer& buffer) const {
                 trace_moving_faces({(*trees_)[sweep.body], first_face_[sweep.body], sweep.part.first,
                                     sweep.part.step_m, sweep.part.frames},
                                    rays, buffer);
+        }
+    }
+}
+
+bool SweptActors::any_turns() const {
+    const auto turns = [](const SteadyFrames& part) { return part.motion == Motion::turning; };
+    return std::any_of(parts_.begin(), parts_.end(), [&](const std::vector<SteadyFrames>& parts) {
+        return std::any_of(parts.begin(), parts.end(), turns);
+    });
+}
+
+namespace {
+
+/// Rays of a body's frame where the body stands.
+RayPacket placed(const RayPacket& rays, const Pose& pose) {
+    RayPacket out = rays;
+    for (std::size_t l = 0; l < rays.count; ++l) {
+        Ray ray = rays.ray(l);
+        ray.origin = pose.point(ray.origin);
+        ray.direction = pose.direction(ray.direction);
+        out.set(l, ray);
+    }
+    out.far = rays.far;
+    return out;
+}
+
+}  // namespace
+
+void SweptActors::trace_from(Index body, const RayPacket& rays, TimeBuffer& buffer) const {
+    for (const SteadyFrames& own : parts_[body]) {
+        const RayPacket here = placed(rays, own.first);
+        trace_moving_faces({(*trees_)[furniture], first_face_[furniture], Pose{}, -own.step_m, own.frames},
+                           here, buffer);
+        for (Index other = 1; other < parts_.size(); ++other) {
+            if (other == body) continue;
+            for (const SteadyFrames& part : parts_[other]) {
+                const FrameSpan both{std::max(own.frames.first, part.frames.first),
+                                     std::min(own.frames.last, part.frames.last)};
+                if (both.count() <= 0) continue;
+                // The rays stay where they are as the frames of `own` begin.
+                Pose first = part.first;
+                first.translation += static_cast<float>(both.first - part.frames.first) * part.step_m -
+                                     static_cast<float>(both.first - own.frames.first) * own.step_m;
+                trace_moving_faces(
+                    {(*trees_)[other], first_face_[other], first, part.step_m - own.step_m, both}, here,
+                    buffer);
+            }
         }
     }
 }

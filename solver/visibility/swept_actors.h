@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "solver/visibility/face_tree.h"
@@ -9,7 +10,7 @@
 
 namespace afterglow {
 
-/// A tree over the faces of every body; the furniture's is empty.
+/// A tree over the faces of every body; the furniture's is empty unless somebody needs it and puts it in.
 using ActorTrees = std::vector<FaceTree>;
 ActorTrees make_actor_trees(const World& world);
 
@@ -37,6 +38,11 @@ class SweptActors {
         return steady_after_[body][static_cast<std::size_t>(frame)] != 0;
     }
 
+    /// What an actor does over the frames, part by part; they are counted from the first.
+    [[nodiscard]] std::span<const SteadyFrames> parts(Index body) const { return parts_[body]; }
+    /// Whether any actor turns in any frame.
+    [[nodiscard]] bool any_turns() const;
+
     /// A face, as time buffers number them.
     struct Face {
         Index body;
@@ -50,6 +56,10 @@ class SweptActors {
     /// Puts every face that a ray meets before its `far` into the buffer, which has been cleared for these
     /// rays and has as many frames.
     void trace(const RayPacket& rays, TimeBuffer& buffer) const;
+
+    /// The same for the lines of an actor that does not turn, directions of a block given in its own frame:
+    /// the furniture, whose tree must be there, and the other actors move past it. None of them may turn.
+    void trace_from(Index body, const RayPacket& rays, TimeBuffer& buffer) const;
 
     /// Puts the frames in which a ray is blocked before its `far`, likewise.
     void trace(const RayPacket& rays, HiddenFrames& hidden) const;
@@ -81,10 +91,11 @@ class SweptActors {
     FrameSpan frames_;
     std::vector<Index> first_face_;  ///< by body: the number of its first face
     std::vector<Index> body_of_face_;
-    std::vector<std::vector<Pose>> poses_;         ///< [body][frame]; empty for the furniture
-    std::vector<std::vector<char>> steady_after_;  ///< [body][frame]; empty for the furniture
-    std::vector<Swept> swept_;                     ///< actors that have faces
-    float reach_m_ = 0;                            ///< no actor comes further off the origin of the world
+    std::vector<std::vector<Pose>> poses_;          ///< [body][frame]; empty for the furniture
+    std::vector<std::vector<SteadyFrames>> parts_;  ///< [body]; empty for the furniture
+    std::vector<std::vector<char>> steady_after_;   ///< [body][frame]; empty for the furniture
+    std::vector<Swept> swept_;                      ///< actors that have faces
+    float reach_m_ = 0;                             ///< no actor comes further off the origin of the world
 };
 
 }  // namespace afterglow

@@ -48,7 +48,8 @@ inline std::vector<double> dense_row(const LayeredMatrix& matrix, std::size_t ro
         const double scale = layer->scale[row];
         for (auto e = layer->base.row_begin[row]; e < layer->base.row_begin[row + 1]; ++e)
             sum[layer->base.column[e]] += scale * static_cast<double>(layer->base.value[e]);
-        for (const CoveredEntry& entry : layer->covered[row]) {
+        for (const CoveredEntry& entry : layer->covered_near(row)) {
+            if (entry.row != row) continue;
             sum[entry.base] -= scale * static_cast<double>(entry.value);
             sum[entry.now] += scale * static_cast<double>(entry.value);
         }

@@ -80,7 +80,8 @@ TEST(LayeredMatrix, ChangesSayWhatTheLayersDid) {
     world.show_at(0);
     const auto unscaled = [&](std::size_t row) {
         std::vector<double> sum(world.matrix.rows() + 1, 0);
-        for (const CoveredEntry& entry : world.matrix.sight.covered[row]) {
+        for (const CoveredEntry& entry : world.matrix.sight.covered_near(row)) {
+            if (entry.row != row) continue;
             sum[entry.base] -= 1;
             sum[entry.now] += 1;
         }

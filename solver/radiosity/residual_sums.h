@@ -1,0 +1,29 @@
+#pragma once
+
+#include "solver/radiosity/residual.h"
+
+namespace afterglow {
+
+// What every row gathers of the radiosity, as a ResidualState keeps it; `step` is made of this.
+
+/// Additions after which a row's sums are computed afresh, so that rounding never accumulates.
+inline constexpr std::uint8_t most_wear = 64;
+
+inline bool is_any(const DoubleLanes& light) {
+    return light.v[0] != 0 || light.v[1] != 0 || light.v[2] != 0;
+}
+
+inline void add_light(DoubleLanes& sum, float value, const DoubleLanes::Vector& light) {
+    sum.v += static_cast<double>(value) * light;
+}
+
+/// The sums of rows [first, last) computed afresh. Thread-safety: other rows may be computed meanwhile.
+void gather_rows(ResidualState& state, const ResidualProblem& problem, std::size_t first, std::size_t last);
+
+/// Likewise of all rows in layers. Same bits for any number of threads. Errors: cancelled.
+void gather_all(ResidualState& state, const ResidualProblem& problem, const Context& context);
+
+/// The sums of the whole rows. Same bits for any number of threads. Errors: cancelled.
+void gather_whole(ResidualState& state, const ResidualProblem& problem, const Context& context);
+
+}  // namespace afterglow

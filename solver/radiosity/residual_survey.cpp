@@ -1,0 +1,93 @@
+#include "solver/radiosity/residual_survey.h"
+
+#include <algorithm>
+
+namespace afterglow {
+
+namespace {
+
+constexpr std::size_t rows_per_chunk = 512;
+
+float largest_channel(const Lanes& light) {
+    const Lanes::Vector size = light.v < 0 ? -light.v : light.v;
+    return std::max(std::max(size[0], size[1]), size[2]);
+}
+
+}  // namespace
+
+Surveyor::Surveyor(ResidualState& state, const ResidualProblem& problem)
+    : state_(state), problem_(problem), work_(state.workspace) {
+    const std::size_t rows = problem.matrix.rows();
+    work_.residual.resize(rows);
+    work_.of_sight.resize(rows);
+    work_.of_light.resize(rows);
+    work_.magnitude.resize(rows);
+    for (std::size_t i = 0; i < rows; ++i) {
+        const Lanes reflectance = to_lanes(problem.reflectance[i]);
+        work_.of_sight[i].v = problem.matrix.sight.scale[i] * reflectance.v;
+        work_.of_light[i].v = problem.matrix.light.scale[i] * reflectance.v;
+    }
+    work_.place_of_whole.assign(rows, no_index);
+    for (std::size_t k = 0; k < problem.matrix.whole_rows.size(); ++k)
+        work_.place_of_whole[problem.matrix.whole_rows[k]] = static_cast<Index>(k);
+}
+
+Survey Surveyor::look(double gain, double asked_error, const Context& context) {
+    expects_from_lamps_ = false;
+    const std::size_t rows = problem_.matrix.rows();
+    std::vector<Part> parts((rows + rows_per_chunk - 1) / rows_per_chunk);
+    context.for_chunks(rows, rows_per_chunk, [&](std::size_t first, std::size_t last) {
+        parts[first / rows_per_chunk] = look_at(first, last);
+    });
+    Part all;
+    for (const Part& part : parts) {
+        all.largest = std::max(all.largest, part.largest);
+        all.brightest = std::max(all.brightest, part.brightest);
+        all.mean.add(part.mean);
+    }
+    const double left = gain * static_cast<double>(all.largest);
+    const double rounding = gather_rounding * static_cast<double>(all.brightest);
+    const double mean = all.mean.value();
+    Survey survey;
+    survey.largest = all.largest;
+    survey.enough = gain > 0 ? std::max(asked_error * mean * (1 - gain) - rounding, 0.0) / gain : 0;
+    survey.certificate = make_certificate(left + rounding, gain, mean);
+    survey.only_rounding = 8 * left <= rounding;
+    return survey;
+}
+
+Surveyor::Part Surveyor::look_at(std::size_t first, std::size_t last) {
+    const LayeredMatrix& matrix = problem_.matrix;
+    Part part;
+    for (std::size_t i = first; i < last; ++i) {
+        DoubleLanes::Vector sum = static_cast<double>(matrix.sight.scale[i]) * state_.by_sight[i].v +
+                                  static_cast<double>(matrix.light.scale[i]) * state_.by_light[i].v;
+        if (const Index k = work_.place_of_whole[i]; k != no_index) sum += state_.by_whole[k].v;
+        const Rgb irradiance =
+            to_rgb({__builtin_convertvector(sum, Lanes::Vector)}) + problem_.external_irradiance[i];
+        const Rgb reflected = problem_.reflectance[i] * irradiance;
+        state_.irradiance[i] = irradiance;
+        work_.residual[i] = to_lanes(problem_.emission[i] + reflected - to_rgb(state_.radiosity[i]));
+        work_.magnitude[i] = largest_channel(work_.residual[i]);
+        part.largest = std::max(part.largest, work_.magnitude[i]);
+        part.brightest = std::max(part.brightest, max_channel(glm::abs(reflected)));
+        part.mean.add(problem_.area[i], problem_.emission[i], reflected);
+    }
+    return part;
+}
+
+float Surveyor::look_again(const Context& context) {
+    const std::size_t rows = problem_.matrix.rows();
+    std::vector<float> largest((rows + rows_per_chunk - 1) / rows_per_chunk);
+    context.for_chunks(rows, rows_per_chunk, [&](std::size_t first, std::size_t last) {
+        float here = 0;
+        for (std::size_t i = first; i < last; ++i) {
+            work_.magnitude[i] = largest_channel(residual(i));
+            here = std::max(here, work_.magnitude[i]);
+        }
+        largest[first / rows_per_chunk] = here;
+    });
+    return *std::max_element(largest.begin(), largest.end());
+}
+
+}  // namespace afterglow
