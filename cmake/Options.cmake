@@ -3,7 +3,7 @@ add_library(afterglow_options INTERFACE)
 target_include_directories(afterglow_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(afterglow_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
 
-# Debian's Embree, OpenImageIO and oneTBB choose their own instruction sets at run time; our loops are built for
+# Debian's Embree and oneTBB choose their own instruction sets at run time; our loops are built for
 # x86-64-v3 (AVX2, FMA), which programs check for when they start.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     target_compile_options(afterglow_options INTERFACE -march=x86-64-v3)

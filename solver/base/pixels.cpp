@@ -1,12 +1,18 @@
 #include "solver/base/pixels.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStdIO.h>
+#include <array>
+#include <cstdlib>
+#include <exception>
 #include <memory>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include <spng.h>
+#include <turbojpeg.h>
 
 #include "solver/base/error.h"
 
@@ -16,84 +22,134 @@ namespace {
 
 constexpr int max_side = 16384;
 constexpr std::int64_t max_pixels = std::int64_t{64} << 20;
+constexpr const char* damaged = "the picture is damaged";
+constexpr const char* unreadable = "not a readable PNG or JPEG picture";
 
-void check_size(const OIIO::ImageSpec& spec, const std::string& place) {
-    if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0)
-        throw Error(ErrorKind::invalid_input, place, "the picture is empty");
-    if (spec.width > max_side || spec.height > max_side ||
-        std::int64_t{spec.width} * std::int64_t{spec.height} > max_pixels)
+void check_size(std::int64_t width, std::int64_t height, const std::string& place) {
+    if (width <= 0 || height <= 0) throw Error(ErrorKind::invalid_input, place, "the picture is empty");
+    if (width > max_side || height > max_side || width * height > max_pixels)
         throw Error(ErrorKind::too_large, place,
-                    "a picture of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
+                    "a picture of " + std::to_string(width) + "x" + std::to_string(height) +
                         " pixels is past the limit of 16384 a side and 64 Mi in all");
 }
 
-/// Writes `spec` and `data` through the library into memory.
-template <class T>
-std::string encode(const char* extension, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
-                   const T* data) {
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput target(bytes);
-    auto output = OIIO::ImageOutput::create(extension, &target);
-    if (!output || !output->open(extension, spec) || !output->write_image(type, data) || !output->close())
-        throw Error(ErrorKind::io, "", std::string("cannot encode a picture as ") + extension);
-    return {bytes.begin(), bytes.end()};
+/// Room for a picture of a size that was read from a file.
+Bytes8 empty_picture(std::int64_t width, std::int64_t height, const std::string& place) {
+    check_size(width, height, place);
+    return {static_cast<int>(width), static_cast<int>(height),
+            std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height))};
+}
+
+using PngCoder = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
+
+Bytes8 decode_png(std::string_view bytes, const std::string& place) {
+    const PngCoder coder(spng_ctx_new(0), &spng_ctx_free);
+    spng_ihdr header{};
+    if (!coder || spng_set_png_buffer(coder.get(), bytes.data(), bytes.size()) != 0 ||
+        spng_get_ihdr(coder.get(), &header) != 0)
+        throw Error(ErrorKind::invalid_input, place, unreadable);
+    Bytes8 out = empty_picture(header.width, header.height, place);
+    // What the file says of its gamma is left alone: textures are sRGB-coded.
+    if (spng_decode_image(coder.get(), out.rgba.data(), out.rgba.size(), SPNG_FMT_RGBA8, SPNG_DECODE_TRNS) !=
+        0)
+        throw Error(ErrorKind::invalid_input, place, damaged);
+    return out;
+}
+
+Bytes8 decode_jpeg(std::string_view bytes, const std::string& place) {
+    const std::unique_ptr<void, decltype(&tjDestroy)> coder(tjInitDecompress(), &tjDestroy);
+    const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+    int width = 0, height = 0, chroma = 0, colours = 0;
+    if (!coder ||
+        tjDecompressHeader3(coder.get(), data, bytes.size(), &width, &height, &chroma, &colours) != 0)
+        throw Error(ErrorKind::invalid_input, place, unreadable);
+    Bytes8 out = empty_picture(width, height, place);
+    // Cameras leave odd bytes between a file's parts; the library warns of them and reads on.
+    if (tjDecompress2(coder.get(), data, bytes.size(), out.rgba.data(), width, 0, height, TJPF_RGBA, 0) !=
+            0 &&
+        tjGetErrorCode(coder.get()) == TJERR_FATAL)
+        throw Error(ErrorKind::invalid_input, place, damaged);
+    return out;
+}
+
+constexpr std::array<const char*, 3> channel_names{"R", "G", "B"};
+
+/// Where the EXR library finds the channels of a picture that fills `window`. It wants memory that it may
+/// write to, also where it only reads.
+Imf::FrameBuffer frame_buffer(Rgb* pixels, const Imath::Box2i& window) {
+    static_assert(sizeof(Rgb) == 3 * sizeof(float));
+    const std::size_t row = sizeof(Rgb) * static_cast<std::size_t>(window.max.x - window.min.x + 1);
+    Imf::FrameBuffer buffer;
+    for (std::size_t c = 0; c < channel_names.size(); ++c)
+        buffer.insert(channel_names[c], Imf::Slice::Make(Imf::FLOAT, reinterpret_cast<float*>(pixels) + c,
+                                                         window, sizeof(Rgb), row));
+    return buffer;
 }
 
 }  // namespace
 
 Bytes8 decode_picture(std::string_view bytes, const std::string& place) {
-    // The library wants a name to guess the format from; it tells PNG from JPEG by content once a reader is
-    // open.
-    const bool is_png = bytes.substr(0, 4) == "\x89PNG";
-    OIIO::Filesystem::IOMemReader source(const_cast<char*>(bytes.data()), bytes.size());
-    auto input = OIIO::ImageInput::open(is_png ? "picture.png" : "picture.jpg", nullptr, &source);
-    if (!input) throw Error(ErrorKind::invalid_input, place, "not a readable PNG or JPEG picture");
-    const OIIO::ImageSpec& spec = input->spec();
-    check_size(spec, place);
-    const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
-    const auto channels = static_cast<std::size_t>(spec.nchannels);
-    std::vector<std::uint8_t> raw(count * channels);
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, raw.data()))
-        throw Error(ErrorKind::invalid_input, place, "the picture is damaged");
-
-    Bytes8 out{spec.width, spec.height, std::vector<std::uint8_t>(count * 4, 255)};
-    const bool grey = channels < 3;
-    const bool has_alpha = channels == 2 || channels >= 4;
-    for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t c = 0; c < 3; ++c) out.rgba[4 * i + c] = raw[channels * i + (grey ? 0 : c)];
-        if (has_alpha) out.rgba[4 * i + 3] = raw[channels * i + (grey ? 1 : 3)];
-    }
-    return out;
+    return bytes.starts_with("\x89PNG") ? decode_png(bytes, place) : decode_jpeg(bytes, place);
 }
 
 Picture read_picture(const std::filesystem::path& path) {
     if (!std::filesystem::exists(path)) throw Error(ErrorKind::not_found, path.string(), "no such file");
-    auto input = OIIO::ImageInput::open(path.string());
-    if (!input) throw Error(ErrorKind::invalid_input, path.string(), "not a readable picture");
-    const OIIO::ImageSpec& spec = input->spec();
-    check_size(spec, path.string());
-    if (spec.nchannels < 3) throw Error(ErrorKind::invalid_input, path.string(), "has fewer than 3 channels");
-    Picture out(spec.width, spec.height);
-    static_assert(sizeof(Rgb) == 3 * sizeof(float));
-    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, out.pixels.data()))
-        throw Error(ErrorKind::invalid_input, path.string(), "the picture is damaged");
-    return out;
+    try {
+        Imf::InputFile file(path.c_str());
+        for (const char* name : channel_names)
+            if (file.header().channels().findChannel(name) == nullptr)
+                throw Error(ErrorKind::invalid_input, path.string(), std::string("has no channel ") + name);
+        const Imath::Box2i window = file.header().dataWindow();
+        check_size(std::int64_t{window.max.x} - window.min.x + 1,
+                   std::int64_t{window.max.y} - window.min.y + 1, path.string());
+        Picture out(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1);
+        file.setFrameBuffer(frame_buffer(out.pixels.data(), window));
+        file.readPixels(window.min.y, window.max.y);
+        return out;
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& e) {
+        throw Error(ErrorKind::invalid_input, path.string(),
+                    std::string("not a readable picture: ") + e.what());
+    }
 }
 
 std::string encode_exr(const Picture& picture) {
-    OIIO::ImageSpec spec(picture.width, picture.height, 3, OIIO::TypeDesc::FLOAT);
-    // ZIP takes 15 times as long and saves a twelfth: the low bits of radiance are noise to it.
-    spec.attribute("compression", "none");
-    // Left out, the library writes the current time, and no two runs would make the same bytes.
-    spec.attribute("DateTime", "");
-    return encode("exr", spec, OIIO::TypeDesc::FLOAT, picture.pixels.data());
+    try {
+        Imf::Header header(picture.width, picture.height);
+        // ZIP takes 15 times as long and saves a twelfth: the low bits of radiance are noise to it.
+        header.compression() = Imf::NO_COMPRESSION;
+        for (const char* name : channel_names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        Imf::StdOSStream target;
+        {
+            Imf::OutputFile file(target, header);
+            file.setFrameBuffer(frame_buffer(const_cast<Rgb*>(picture.pixels.data()), header.dataWindow()));
+            file.writePixels(picture.height);
+        }
+        return target.str();
+    } catch (const std::exception& e) {
+        throw Error(ErrorKind::io, "", std::string("cannot encode a picture as EXR: ") + e.what());
+    }
 }
 
 std::string encode_png(int width, int height, const std::vector<std::uint8_t>& rgb) {
-    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    spec.attribute("png:compressionLevel", 4);
-    return encode("png", spec, OIIO::TypeDesc::UINT8, rgb.data());
+    const PngCoder coder(spng_ctx_new(SPNG_CTX_ENCODER), &spng_ctx_free);
+    spng_ihdr header{};
+    header.width = static_cast<std::uint32_t>(width);
+    header.height = static_cast<std::uint32_t>(height);
+    header.bit_depth = 8;
+    header.color_type = SPNG_COLOR_TYPE_TRUECOLOR;
+    std::size_t size = 0;
+    int failure = 0;
+    unsigned char* bytes = nullptr;
+    if (coder && spng_set_option(coder.get(), SPNG_ENCODE_TO_BUFFER, 1) == 0 &&
+        spng_set_option(coder.get(), SPNG_IMG_COMPRESSION_LEVEL, 4) == 0 &&
+        spng_set_ihdr(coder.get(), &header) == 0 && spng_set_srgb(coder.get(), 0) == 0 &&
+        spng_encode_image(coder.get(), rgb.data(), rgb.size(), SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE) == 0)
+        bytes = static_cast<unsigned char*>(spng_get_png_buffer(coder.get(), &size, &failure));
+    if (bytes == nullptr) throw Error(ErrorKind::io, "", "cannot encode a picture as PNG");
+    const std::unique_ptr<unsigned char, decltype(&std::free)> owner(bytes, &std::free);
+    return {reinterpret_cast<const char*>(bytes), size};
 }
 
 }  // namespace afterglow

@@ -13,7 +13,7 @@ LONGEST_FILE = 400
 # Where a foreign header may be included. A folder ends with "/"; "one of X/" means a single file in there.
 FOREIGN = {
     r"embree3/": ["solver/visibility/", "tests/"],
-    r"OpenImageIO/": ["solver/base/pixels.cpp"],
+    r"Imf\w+\.h|spng\.h|turbojpeg\.h": ["solver/base/pixels.cpp"],
     r"tbb/|oneapi/": ["solver/base/threads.cpp"],
     r"glm/": ["solver/base/math.h"],
     r"nlohmann/": ["solver/base/json.h", "one of client/"],

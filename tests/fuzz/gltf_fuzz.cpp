@@ -48,11 +48,6 @@ void check_tracks(const std::vector<afterglow::Track<T>>& tracks, std::size_t ta
 
 }  // namespace
 
-/// The image library loses the text of an error inside a damaged PNG; that is not ours to find.
-extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
-    return "leak:libOpenImageIO\n";
-}
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     const auto format =
