@@ -20,14 +20,12 @@ namespace afterglow {
 
 namespace {
 
-constexpr int max_side = 16384;
-constexpr std::int64_t max_pixels = std::int64_t{64} << 20;
 constexpr const char* damaged = "the picture is damaged";
 constexpr const char* unreadable = "not a readable PNG or JPEG picture";
 
 void check_size(std::int64_t width, std::int64_t height, const std::string& place) {
     if (width <= 0 || height <= 0) throw Error(ErrorKind::invalid_input, place, "the picture is empty");
-    if (width > max_side || height > max_side || width * height > max_pixels)
+    if (is_too_large(width, height))
         throw Error(ErrorKind::too_large, place,
                     "a picture of " + std::to_string(width) + "x" + std::to_string(height) +
                         " pixels is past the limit of 16384 a side and 64 Mi in all");

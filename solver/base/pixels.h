@@ -1,7 +1,7 @@
 #pragma once
 
 // The only place that uses OpenEXR, libspng and TurboJPEG: pictures between memory, encoded bytes and files.
-// (One library for all formats loads 250 others with it, which takes longer than a draft.)
+// Pictures of other formats: other_pictures.
 
 #include <cstdint>
 #include <filesystem>
@@ -38,6 +38,13 @@ struct Bytes8 {
     int height = 0;
     std::vector<std::uint8_t> rgba;  ///< width × height × 4
 };
+
+/// Whether a picture is past what is read of any format: 16,384 pixels a side, 64 Mi in all.
+constexpr bool is_too_large(std::int64_t width, std::int64_t height) {
+    constexpr std::int64_t max_side = 16384;
+    constexpr std::int64_t max_pixels = std::int64_t{64} << 20U;
+    return width > max_side || height > max_side || width * height > max_pixels;
+}
 
 /// Decodes PNG or JPEG; their colour profiles and gamma are ignored. `place` names the picture in errors.
 /// Errors: invalid_input for bytes that are no picture; too_large past 16,384 pixels a side or 64 Mi pixels

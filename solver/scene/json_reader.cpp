@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "solver/base/other_pictures.h"
 #include "solver/base/pixels.h"
 #include "solver/scene/default_camera.h"
 #include "solver/scene/gltf_reader.h"
@@ -122,7 +123,7 @@ class JsonReader {
         const auto [known, is_new] =
             textures_.try_emplace(reference.as_string(), static_cast<Index>(scene_.textures.size()));
         if (!is_new) return known->second;
-        Bytes8 pixels = decode_picture(fetch(reference), reference.place());
+        Bytes8 pixels = decode_texture(fetch(reference), reference.place());
         texels_ += pixels.rgba.size() / 4;
         if (texels_ > max_texels)
             throw Error(ErrorKind::too_large, reference.place(),

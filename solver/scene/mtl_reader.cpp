@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "solver/base/other_pictures.h"
 #include "solver/base/pixels.h"
 #include "solver/scene/line_reader.h"
 #include "solver/scene/texture.h"
@@ -198,7 +199,7 @@ std::string MtlReader::read(const std::string& file, const std::string& place) {
 Index MtlReader::texture(const std::string& file, const std::string& place) {
     const auto known = textures_.find(file);
     if (known != textures_.end()) return known->second;
-    Bytes8 pixels = decode_picture(read(file, place), place);
+    Bytes8 pixels = decode_texture(read(file, place), place);
     texels_ += pixels.rgba.size() / 4;
     if (texels_ > max_texels)
         throw Error(ErrorKind::too_large, place, "the textures have more than 128 Mi pixels in all");

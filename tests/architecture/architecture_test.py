@@ -14,6 +14,7 @@ LONGEST_FILE = 400
 FOREIGN = {
     r"embree3/": ["solver/visibility/", "tests/"],
     r"Imf\w+\.h|spng\.h|turbojpeg\.h": ["solver/base/pixels.cpp"],
+    r"OpenImageIO/": ["solver/base/module/other_pictures_module.cpp"],
     r"tbb/|oneapi/": ["solver/base/threads.cpp"],
     r"glm/": ["solver/base/math.h"],
     r"nlohmann/": ["solver/base/json.h", "one of client/"],
