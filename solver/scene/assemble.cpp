@@ -60,7 +60,7 @@ std::size_t append(Body& body, const Mesh& mesh, const Placement& placement, con
 
 /// Joins the static geometry and makes the actors.
 std::vector<Body> make_bodies(const Scene& scene, const std::vector<NodeMotion>& motions, PathMaker& paths,
-                              Warnings& warnings) {
+                              std::vector<FurniturePiece>& pieces, Warnings& warnings) {
     const auto carries = carriers(scene, motions);
     std::vector<Body> bodies{{"furniture", {}, {}, {}, {}}};
     std::vector<Attachment> attachments(scene.nodes.size());
@@ -78,8 +78,11 @@ std::vector<Body> make_bodies(const Scene& scene, const std::vector<NodeMotion>&
         }
         if (node.mesh == no_index) continue;
         const auto place = place_of("node", node.name, n);
-        const auto dropped =
-            append(bodies[attachment.body], scene.meshes[node.mesh], attachment.placement, place);
+        Body& body = bodies[attachment.body];
+        const auto first = static_cast<Index>(body.triangles.size());
+        const auto dropped = append(body, scene.meshes[node.mesh], attachment.placement, place);
+        if (attachment.body == furniture)
+            pieces.push_back({node.name, first, static_cast<Index>(body.triangles.size()) - first});
         if (dropped > 0)
             warnings.push_back(
                 {place, std::to_string(dropped) + " triangles without area as placed here were left out"});
@@ -98,7 +101,7 @@ World assemble(const Scene& scene, double tolerance_m, double tolerance_rad) {
     World world;
     world.name = scene.name;
     world.warnings = scene.warnings;
-    world.bodies = make_bodies(scene, motions, paths, world.warnings);
+    world.bodies = make_bodies(scene, motions, paths, world.pieces, world.warnings);
     for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
         const Node& node = scene.nodes[n];
         const auto index = static_cast<Index>(n);

@@ -38,6 +38,13 @@ struct Body {
 };
 inline constexpr Index furniture = 0;
 
+/// A named object among the furniture: triangles of body 0 that stand together there, with corners that no
+/// other triangle uses.
+struct FurniturePiece {
+    std::string name;
+    Index first_triangle = 0, triangles = 0;
+};
+
 /// A light without surface and where it is.
 struct PlacedLight {
     Light light;
@@ -53,7 +60,8 @@ struct PlacedCamera {
 /// A scene made ready for solving: no hierarchy, no scale, furniture joined, actors apart.
 struct World {
     std::string name;
-    std::vector<Body> bodies;  ///< at least the furniture
+    std::vector<Body> bodies;            ///< at least the furniture
+    std::vector<FurniturePiece> pieces;  ///< of the furniture, in the order of its triangles
     std::vector<Material> materials;
     std::vector<Texture> textures;
     std::vector<Track<float>> material_emission;   ///< as in Tracks

@@ -2,28 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solver/base/error.h"
 #include "solver/formfactor/static_cache.h"
 #include "solver/sequence/choose.h"
-#include "solver/sequence/parts.h"
+#include "solver/sequence/edit_tools.h"
 #include "solver/sequence/prepare.h"
 
 namespace afterglow {
 
 namespace {
-
-/// The number of the element with a given name.
-template <class Elements>
-Index index_named(const Elements& elements, Index first, const std::string& name, const char* kind) {
-    std::string names;
-    for (Index k = first; k < elements.size(); ++k) {
-        if (elements[k].name == name) return k;
-        names += (names.empty() ? "" : ", ") + elements[k].name;
-    }
-    throw Error(ErrorKind::not_found, kind,
-                "there is no " + std::string(kind) + " \"" + name + "\"; there are: " + names);
-}
 
 void require_light(const Rgb& value, float limit, const char* field, const char* rule) {
     if (!is_finite(value) || value.r < 0 || value.g < 0 || value.b < 0 || max_channel(value) >= limit)
@@ -64,18 +53,6 @@ void set_lamps(SequenceState::Parts& parts, Lamps lamps, const Context& context)
                                       parts.light->lines_per_patch(), parts.config.seed);
 }
 
-/// Everything but the scene itself, from the beginning.
-EditOutcome begin_anew(SequenceState::Parts& parts, const Context& context) {
-    parts.kept_light.reset();
-    parts.kept_rows.reset();
-    parts.picture = {};
-    parts.visible_before.clear();
-    parts.background = {};
-    mesh_world(parts, context);
-    parts.strategy = make_strategy(parts.config.visibility, parts.world, parts.clock());
-    return {0, false};
-}
-
 }  // namespace
 
 EditOutcome set_emission(SequenceState& state, const std::string& material, const Rgb& emission,
@@ -92,7 +69,7 @@ EditOutcome set_emission(SequenceState& state, const std::string& material, cons
     if (lamps.lamp_of_patch == parts.lamps.lamp_of_patch) return {};
     const auto sight = static_cast<double>(parts.sight->lines_per_patch());
     set_lamps(parts, std::move(lamps), context);
-    return {sight / (sight + parts.light->lines_per_patch()), false};
+    return {sight / (sight + parts.light->lines_per_patch()), 0, false};
 }
 
 EditOutcome set_reflectance(SequenceState& state, const std::string& material, const Rgb& reflectance) {
@@ -119,10 +96,17 @@ EditOutcome set_path(SequenceState& state, const std::string& actor, double from
     joined.keys.push_back({from_s, path.at(from_s)});
     for (const Key<Pose>& key : path.keys)
         if (key.time_s > from_s) joined.keys.push_back(key);
-    old = std::move(joined);
-    if (reaches_more(parts, context)) return begin_anew(parts, context);
-    parts.strategy = make_strategy(parts.config.visibility, parts.world, parts.clock());
-    return {};
+    const Path before = std::exchange(old, std::move(joined));
+    try {
+        if (reaches_more(parts, context)) return begin_anew(parts, context);
+        const auto ahead = parts.strategy->follow_path(parts.lines(0), edited, before, context);
+        if (!ahead) parts.strategy = make_strategy(parts.config.visibility, parts.world, parts.clock());
+        return {1, ahead.value_or(0), true};
+    } catch (...) {
+        old = before;
+        begin_anew(parts, Context(context.threads()));
+        throw;
+    }
 }
 
 EditOutcome set_camera(SequenceState& state, const PlacedCamera& camera) {

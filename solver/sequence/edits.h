@@ -10,6 +10,9 @@ namespace afterglow {
 struct EditOutcome {
     /// Of all lines of static patches, those whose background stays known.
     double lines_reused = 1;
+    /// Of the lines looked ahead along for frames to come, those for which what happens stays known; 0 where
+    /// nothing was known.
+    double ahead_reused = 0;
     /// Whether the next frame's light starts from the last one's.
     bool light_reused = true;
 };
@@ -30,7 +33,8 @@ EditOutcome set_reflectance(SequenceState& state, const std::string& material, c
 
 /// Where an actor goes from a time on: keys of `path` before it are left out, and so are those of its old
 /// path from then on. The furniture's backgrounds stay, unless light comes to sides that it never reached;
-/// what was known of the actors ahead is found anew.
+/// what was known of the actors ahead is found anew along lines that come near the actor on its old way or
+/// the new one.
 EditOutcome set_path(SequenceState& state, const std::string& actor, double from_s, const Path& path,
                      const Context& context);
 

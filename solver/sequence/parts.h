@@ -34,6 +34,9 @@ struct SequenceState::Parts {
     PlacedCamera camera;
     RayCaster caster;
     SideMask reached;  ///< the sides that have patches
+    /// How far apart patches are, first as guessed before it is known which sides get any: found once, so
+    /// that what is not changed is divided as before.
+    std::optional<float> guessed_size_m, patch_size_m;
     PatchMesh mesh;
     std::optional<Interpolation> interpolation;
     std::optional<SmoothNormals> normals;

@@ -70,9 +70,19 @@ PlacedCamera find_camera(const World& world, const std::string& name) {
 namespace {
 
 /// How far apart patches are expected to be before it is known which sides get any.
-float first_guess_m(const SequenceState::Parts& parts) {
+float first_guess_m(SequenceState::Parts& parts) {
     if (const auto asked = parts.config.patch_size_m) return static_cast<float>(*asked);
-    return std::sqrt(area_of_all(parts.world) / level_of(parts.config).cells);
+    if (!parts.guessed_size_m)
+        parts.guessed_size_m = std::sqrt(area_of_all(parts.world) / level_of(parts.config).cells);
+    return *parts.guessed_size_m;
+}
+
+/// How far apart they are, once that is known.
+float patch_size_m(SequenceState::Parts& parts, const Surfaces& surfaces) {
+    if (const auto asked = parts.config.patch_size_m) return static_cast<float>(*asked);
+    if (!parts.patch_size_m)
+        parts.patch_size_m = std::sqrt(reached_area(surfaces, parts.reached) / level_of(parts.config).cells);
+    return *parts.patch_size_m;
 }
 
 SideMask find_reached(SequenceState::Parts& parts, const Surfaces& surfaces, const Context& context) {
@@ -90,8 +100,7 @@ PatchMesh mesh_reached(SequenceState::Parts& parts, const Context& context) {
     const Surfaces surfaces = find_surfaces(world, {.facet_size_m = first_guess_m(parts)});
     parts.reached = find_reached(parts, surfaces, context);
     MeshConfig mesh;
-    mesh.patch_size_m =
-        asked ? first_guess_m(parts) : std::sqrt(reached_area(surfaces, parts.reached) / level.cells);
+    mesh.patch_size_m = patch_size_m(parts, surfaces);
     if (asked || level.finest_share >= 1) return make_patches(world, surfaces, parts.reached, mesh, context);
 
     parts.caster.set_poses(poses_at(world, 0));
@@ -107,11 +116,18 @@ PatchMesh mesh_reached(SequenceState::Parts& parts, const Context& context) {
 }  // namespace
 
 void mesh_world(SequenceState::Parts& parts, const Context& context) {
-    const World& world = parts.world;
+    divide_world(parts, context);
+    lay_lines(parts);
+}
+
+void divide_world(SequenceState::Parts& parts, const Context& context) {
     parts.mesh = mesh_reached(parts, context);
     if (parts.mesh.size() == 0)
-        throw Error(ErrorKind::invalid_input, world.name, "no surface can be reached by light or seen");
+        throw Error(ErrorKind::invalid_input, parts.world.name, "no surface can be reached by light or seen");
+}
 
+void lay_lines(SequenceState::Parts& parts) {
+    const World& world = parts.world;
     parts.interpolation.emplace(world, parts.mesh);
     parts.normals.emplace(world, parts.mesh.surfaces);
     parts.lamps = find_lamps(world, parts.mesh);

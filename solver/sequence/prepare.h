@@ -10,6 +10,10 @@ void check(const SequenceConfig& config);
 /// Chooses the sides that get patches, divides them, lays the lines and finds the lamps.
 void mesh_world(SequenceState::Parts& parts, const Context& context);
 
+/// Its two steps: chooses the sides that get patches and divides them; lays the lines and finds the lamps.
+void divide_world(SequenceState::Parts& parts, const Context& context);
+void lay_lines(SequenceState::Parts& parts);
+
 /// Whether light, as the world now is, reaches sides that got no patches when it was meshed.
 bool reaches_more(SequenceState::Parts& parts, const Context& context);
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "solver/base/error.h"
-#include "solver/visibility/line_events.h"
+#include "solver/visibility/changed_events.h"
 #include "solver/visibility/own_light_lines.h"
 #include "solver/visibility/own_lines.h"
 
@@ -20,8 +20,9 @@ constexpr int growth = 4;
 /// The events of some frames, by the ranges of directions in which they were asked for.
 struct Window {
     SweptActors actors;
-    std::vector<LineEvents> sight;
-    std::vector<LineEvents> own;  ///< of actors' own lines, where they can be looked ahead along
+    std::vector<DirectionRange> ranges;
+    std::vector<LineEvents> sight;  ///< by range
+    std::vector<LineEvents> own;    ///< likewise, of actors' own lines, where they can be looked ahead along
     LineEvents light;
     bool looks_along_own = false;  ///< ahead, that is
     Index directions = 0;          ///< of every patch; 0: the light lines are missing, too
@@ -57,7 +58,9 @@ class Events : public VisibilityStrategy {
                          const Context& context) override {
         if (!window_ || !window_->actors.frames().contains(scene.frame))
             open_window(scene.frame);
-        else if (shown_ && *shown_ != scene.frame)
+        else if (!shown_)
+            show_again(scene, visible);
+        else if (*shown_ != scene.frame)
             move_to(scene, visible);
         if (range.last > window_->directions) extend(scene, range.last, visible, context);
         shown_ = scene.frame;
@@ -66,11 +69,82 @@ class Events : public VisibilityStrategy {
         return rays;
     }
 
+    std::optional<double> follow_path(const LineScene& scene, Index actor, const Path& before,
+                                      const Context& context) override {
+        if (!anything_moves(world_)) return std::nullopt;
+        if (!window_) return 0;
+        const Stopwatch watch;
+        forget_changes();
+        shown_.reset();
+        // As in extend.
+        Window window = std::move(*window_);
+        window_.reset();
+        std::vector<Box> boxes = window.actors.boxes_of(actor);
+        const FrameSpan frames = window.actors.frames();
+        const bool same_here = goes_as(before, actor, frames);
+        window.actors = SweptActors(world_, trees_, clock_, frames);
+        double kept = 1;
+        if (!same_here) {
+            const auto now = window.actors.boxes_of(actor);
+            boxes.insert(boxes.end(), now.begin(), now.end());
+            kept = find_again(scene, boxes, window, context);
+        }
+        window_.emplace(std::move(window));
+        note(frames, watch.elapsed());
+        return kept;
+    }
+
   private:
+    /// Whether an actor stands in some frames where it stood on another path.
+    [[nodiscard]] bool goes_as(const Path& before, Index actor, const FrameSpan& frames) const {
+        for (int f = frames.first; f <= frames.last; ++f)
+            if (before.at(clock_.time_of(f)) != world_.bodies[actor].path.at(clock_.time_of(f))) return false;
+        return true;
+    }
+
+    /// Finds the events of those packets anew that meet some boxes; returns the share of the others.
+    double find_again(const LineScene& scene, std::span<const Box> boxes, Window& window,
+                      const Context& context) {
+        const EventScene events{world_,           scene.mesh,    scene.sight, scene.light,
+                                scene.background, window.actors, scene.caster};
+        find_own_again(events, scene, window, context);
+        std::size_t met = 0, all = 0;
+        const auto count = [&](const MetPackets& packets) {
+            met += packets.met;
+            all += packets.all;
+        };
+        for (std::size_t r = 0; r < window.ranges.size(); ++r) {
+            const DirectionRange& range = window.ranges[r];
+            const MetPackets packets = sight_packets_meeting(events, range, boxes, context);
+            window.sight[r] =
+                replace_events(scene.sight, scene.sight.lines_per_patch(), window.sight[r], packets.mask,
+                               find_line_events(events, range, packets.mask, context));
+            count(packets);
+        }
+        if (scene.light.lines_per_patch() > 0) {
+            const MetPackets packets = light_packets_meeting(events, boxes, context);
+            window.light = replace_events(scene.sight, scene.light.lines_per_patch(), window.light,
+                                          packets.mask, find_light_events(events, packets.mask, context));
+            count(packets);
+        }
+        return all > 0 ? 1 - static_cast<double>(met) / static_cast<double>(all) : 0;
+    }
+
+    /// Of actors' own lines all events, which are few: any of them may meet the actor.
+    void find_own_again(const EventScene& events, const LineScene& scene, Window& window,
+                        const Context& context) {
+        window.own.clear();
+        window.looks_along_own = can_look_ahead_along_own_lines(window.actors, trees_[furniture]);
+        if (!window.looks_along_own) return;
+        learn_alone(scene, window.directions, context);
+        for (const DirectionRange& range : window.ranges)
+            window.own.push_back(find_own_line_events(events, alone_, range, context));
+    }
+
     void open_window(int frame) {
         if (!start_) start_ = frame;
-        window_.emplace(
-            Window{SweptActors(world_, trees_, clock_, event_window(frame, *start_, config_)), {}, {}, {}});
+        window_.emplace(Window{
+            SweptActors(world_, trees_, clock_, event_window(frame, *start_, config_)), {}, {}, {}, {}});
         window_->looks_along_own = can_look_ahead_along_own_lines(window_->actors, trees_[furniture]);
         shown_.reset();
         forget_changes();
@@ -142,27 +216,38 @@ class Events : public VisibilityStrategy {
                                 scene.background, window.actors, scene.caster};
         const bool first_time = window.directions == 0;
         const DirectionRange range{window.directions, last};
-        if (first_time) window.light = find_light_events(events, context);
-        window.sight.push_back(find_line_events(events, range, context));
+        if (first_time) window.light = find_light_events(events, {}, context);
+        window.ranges.push_back(range);
+        window.sight.push_back(find_line_events(events, range, {}, context));
         if (window.looks_along_own) {
             learn_alone(scene, last, context);
             window.own.push_back(find_own_line_events(events, alone_, range, context));
         }
         window.directions = last;
-
-        show_background(scene, range, visible);
-        if (window.looks_along_own) show_alone(scene, range, visible);
-        if (first_time)
-            std::copy(scene.background.light_contribution.begin(), scene.background.light_contribution.end(),
-                      visible.light_contribution.begin());
-        const FrameSpan frames = window.actors.frames();
-        for (int f = 0; f <= scene.frame - frames.first; ++f) {
-            show_patches(window.sight.back().at(f), &LineEvent::to, visible);
-            if (window.looks_along_own) show_own(window.own.back().at(f), &LineEvent::to, scene, visible);
-            if (first_time) show_lamps(window.light.at(f), &LineEvent::to, scene, visible);
-        }
         window_.emplace(std::move(window));
-        note(frames, watch.elapsed());
+        show_sight(scene, window_->ranges.size() - 1, visible);
+        if (first_time) show_light(scene, visible);
+        note(window_->actors.frames(), watch.elapsed());
+    }
+
+    /// Shows all that is known at the frame asked for, whatever was shown before.
+    void show_again(const LineScene& scene, VisibleLines& visible) const {
+        for (std::size_t r = 0; r < window_->ranges.size(); ++r) show_sight(scene, r, visible);
+        if (!window_->ranges.empty()) show_light(scene, visible);
+    }
+    void show_sight(const LineScene& scene, std::size_t range, VisibleLines& visible) const {
+        show_background(scene, window_->ranges[range], visible);
+        if (window_->looks_along_own) show_alone(scene, window_->ranges[range], visible);
+        for (int f = 0; f <= scene.frame - window_->actors.frames().first; ++f) {
+            show_patches(window_->sight[range].at(f), &LineEvent::to, visible);
+            if (window_->looks_along_own) show_own(window_->own[range].at(f), &LineEvent::to, scene, visible);
+        }
+    }
+    void show_light(const LineScene& scene, VisibleLines& visible) const {
+        std::copy(scene.background.light_contribution.begin(), scene.background.light_contribution.end(),
+                  visible.light_contribution.begin());
+        for (int f = 0; f <= scene.frame - window_->actors.frames().first; ++f)
+            show_lamps(window_->light.at(f), &LineEvent::to, scene, visible);
     }
 
     static void show_background(const LineScene& scene, const DirectionRange& range, VisibleLines& visible) {

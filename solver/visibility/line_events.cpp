@@ -169,13 +169,18 @@ LineEvents collect(const EventScene& scene, std::size_t first, std::size_t last,
     return by_frame(parts, scene.actors.frames().count(), context);
 }
 
-void find_in_block(const EventScene& scene, std::size_t b, const DirectionRange& range, TimeBuffer& buffer,
-                   Targets& targets, Part& part) {
+bool is_wanted(const PacketMask& wanted, std::size_t packet) {
+    return wanted.empty() || wanted[packet] != 0;
+}
+
+void find_in_block(const EventScene& scene, std::size_t b, const DirectionRange& range,
+                   const PacketMask& wanted, TimeBuffer& buffer, Targets& targets, Part& part) {
     const LineTargets& background = scene.background.background;
     const int frames = scene.actors.frames().count();
     const PatchBlock& block = scene.sight.blocks()[b];
     RayPacket rays;
     for (Index d = range.first; d < range.last; ++d) {
+        if (!is_wanted(wanted, b * scene.sight.lines_per_patch() + d)) continue;
         scene.sight.rays(b, d, Pose{}, rays);
         const std::size_t line = scene.sight.line(block, d, 0);
         std::copy_n(background.distance.begin() + static_cast<std::ptrdiff_t>(line), block.count,
@@ -213,11 +218,13 @@ void find_own_in_block(const EventScene& scene, const LinesAlone& alone, std::si
     }
 }
 
-void find_light_in_block(const EventScene& scene, std::size_t b, HiddenFrames& hidden, Part& part) {
+void find_light_in_block(const EventScene& scene, std::size_t b, const PacketMask& wanted,
+                         HiddenFrames& hidden, Part& part) {
     const PatchBlock& block = scene.sight.blocks()[b];
     RayPacket rays;
     std::array<float, 16> unused;
     for (Index k = 0; k < scene.light.lines_per_patch(); ++k) {
+        if (!is_wanted(wanted, b * scene.light.lines_per_patch() + k)) continue;
         if (scene.mesh.body[scene.light.lamp_patch(b, k)] != furniture) continue;
         scene.light.rays(b, k, scene.placed, rays, unused);
         const std::size_t line = scene.light.line(block, k, 0);
@@ -238,14 +245,15 @@ void find_light_in_block(const EventScene& scene, std::size_t b, HiddenFrames& h
 
 }  // namespace
 
-LineEvents find_line_events(const EventScene& scene, const DirectionRange& range, const Context& context) {
+LineEvents find_line_events(const EventScene& scene, const DirectionRange& range, const PacketMask& wanted,
+                            const Context& context) {
     check_size(scene.background.background.patch.size());
     return collect(scene, 0, scene.sight.static_blocks(), context,
                    [&](std::size_t begin, std::size_t end, Part& part) {
                        TimeBuffer buffer(scene.actors.frames().count());
                        Targets targets(scene);
                        for (std::size_t b = begin; b < end; ++b)
-                           find_in_block(scene, b, range, buffer, targets, part);
+                           find_in_block(scene, b, range, wanted, buffer, targets, part);
                    });
 }
 
@@ -265,12 +273,13 @@ LineEvents find_own_line_events(const EventScene& scene, const LinesAlone& alone
                    });
 }
 
-LineEvents find_light_events(const EventScene& scene, const Context& context) {
+LineEvents find_light_events(const EventScene& scene, const PacketMask& wanted, const Context& context) {
     check_size(scene.background.light_contribution.size());
     return collect(scene, 0, scene.sight.static_blocks(), context,
                    [&](std::size_t begin, std::size_t end, Part& part) {
                        HiddenFrames hidden(scene.actors.frames().count());
-                       for (std::size_t b = begin; b < end; ++b) find_light_in_block(scene, b, hidden, part);
+                       for (std::size_t b = begin; b < end; ++b)
+                           find_light_in_block(scene, b, wanted, hidden, part);
                    });
 }
 

@@ -41,9 +41,15 @@ struct EventScene {
     const RayCaster& placed;  ///< furniture only is asked for
 };
 
-/// The events of the static patches' sight lines in a range of directions, whose background must be known.
-/// The same for any number of threads. Errors: too_large where there are more than 2³² lines; cancelled.
-LineEvents find_line_events(const EventScene& scene, const DirectionRange& range, const Context& context);
+/// Some packets of the static patches' lines, [block · packets a block + direction or sample] = 1; empty:
+/// all.
+using PacketMask = std::vector<std::uint8_t>;
+
+/// The events of the static patches' sight lines in a range of directions, whose background must be known; of
+/// the packets in `wanted`, by lines_per_patch directions a block. The same for any number of threads.
+/// Errors: too_large where there are more than 2³² lines; cancelled.
+LineEvents find_line_events(const EventScene& scene, const DirectionRange& range, const PacketMask& wanted,
+                            const Context& context);
 
 /// Whether the lines of actors' patches can be looked ahead along: no actor turns, and the furniture, whose
 /// tree must be among the actors', is so simple that it costs less than tracing them in every frame.
@@ -56,6 +62,6 @@ LineEvents find_own_line_events(const EventScene& scene, const LinesAlone& alone
                                 const Context& context);
 
 /// The events of the static patches' light lines that end on static lamps: hidden or not. Errors: likewise.
-LineEvents find_light_events(const EventScene& scene, const Context& context);
+LineEvents find_light_events(const EventScene& scene, const PacketMask& wanted, const Context& context);
 
 }  // namespace afterglow

@@ -22,6 +22,10 @@ class Retrace : public VisibilityStrategy {
 
 }  // namespace
 
+std::optional<double> VisibilityStrategy::follow_path(const LineScene&, Index, const Path&, const Context&) {
+    return std::nullopt;
+}
+
 Milliseconds total(std::span<const WorkAhead> work) {
     Milliseconds sum{};
     for (const WorkAhead& window : work) sum += window.time;

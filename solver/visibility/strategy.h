@@ -65,6 +65,12 @@ class VisibilityStrategy {
     /// What the updates since the last call changed on static patches' lines, where the strategy knows it
     /// without comparing.
     [[nodiscard]] virtual std::optional<LineChanges> take_changes() { return std::nullopt; }
+    /// Takes over that the world has one actor go another way than `before`; its other ways and all lines are
+    /// as they were. Returns which share of the lines known ahead stays known, or nothing where the strategy
+    /// is to be made anew. `visible` may then be shown otherwise by the next update. Errors: cancelled,
+    /// after which nothing is known ahead.
+    virtual std::optional<double> follow_path(const LineScene& scene, Index actor, const Path& before,
+                                              const Context& context);
     /// Window by window, in order of time spent. Not part of any one frame's cost.
     [[nodiscard]] virtual std::span<const WorkAhead> work_ahead() const { return {}; }
 };

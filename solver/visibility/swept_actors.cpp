@@ -80,6 +80,16 @@ SweptActors::Sweep SweptActors::sweep_of(const SteadyFrames& part, Index body) c
     return sweep;
 }
 
+std::vector<Box> SweptActors::boxes_of(Index body) const {
+    // What moves is placed in single precision.
+    const Vec3 slack(1e-5F * reach_m_);
+    std::vector<Box> boxes;
+    for (const Swept& swept : swept_)
+        for (const Sweep& sweep : swept.sweeps)
+            if (sweep.body == body) boxes.push_back({sweep.box.low - slack, sweep.box.high + slack});
+    return boxes;
+}
+
 namespace {
 
 /// Whether any ray comes into a ball before its end.

@@ -53,6 +53,9 @@ class SweptActors {
         return {body, (*trees_)[body].faces[number - first_face_[body]]};
     }
 
+    /// The boxes an actor comes into, one for each steady part of its way, a little larger than exact.
+    [[nodiscard]] std::vector<Box> boxes_of(Index body) const;
+
     /// Puts every face that a ray meets before its `far` into the buffer, which has been cleared for these
     /// rays and has as many frames.
     void trace(const RayPacket& rays, TimeBuffer& buffer) const;

@@ -134,7 +134,7 @@ class Events {
             const SweptActors actors(scene.world, trees_, frame_clock, *window_);
             const EventScene in{scene.world,      scene.mesh, scene.sight, scene.no_light,
                                 scene.background, actors,     scene.caster};
-            events_ = find_line_events(in, {0, lines_per_patch}, scene.context);
+            events_ = find_line_events(in, {0, lines_per_patch}, {}, scene.context);
             std::copy(scene.background.background.patch.begin(), scene.background.background.patch.end(),
                       scene.visible.patch.begin());
         }

@@ -74,7 +74,7 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
                 const SweptActors actors(room.world, trees, clock, {f, f + window - 1});
                 const EventScene scene{room.world,      room.mesh, room.sight, room.light,
                                        room.background, actors,    room.caster};
-                found = find_line_events(scene, {0, lines}, context);
+                found = find_line_events(scene, {0, lines}, {}, context);
             });
             std::copy(room.background.background.patch.begin(), room.background.background.patch.end(),
                       shown.begin());
@@ -136,7 +136,7 @@ void time_light_lines(const Room& room, const FrameClock& clock, int frames, con
             const SweptActors actors(room.world, trees, clock, {f, f + window - 1});
             const EventScene scene{room.world,      room.mesh, room.sight, room.light,
                                    room.background, actors,    room.caster};
-            events += find_light_events(scene, context).list.size();
+            events += find_light_events(scene, {}, context).list.size();
         }
     });
     std::printf("\n%zu light lines of static patches: ahead %.1f ms, %.2f M events\n",

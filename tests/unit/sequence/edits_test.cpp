@@ -128,6 +128,8 @@ TEST(Edits, AnotherWayThroughTheSameSpaceKeepsTheFurnituresLines) {
     path.keys[1].value.translation.y = 1.1F;
     const EditOutcome outcome = set_path(job.state, job.scene.bodies[1].name, 0, path, Context(2));
     EXPECT_EQ(outcome.lines_reused, 1);
+    EXPECT_GT(outcome.ahead_reused, 0.4);
+    EXPECT_LT(outcome.ahead_reused, 1);
     job.scene.bodies[1].path = path;
     job.expect_as_new(15);
     job.expect_as_new(4);

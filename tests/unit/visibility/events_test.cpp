@@ -117,6 +117,76 @@ TEST(Events, DoNotDependOnTheDivisionOfDirectionsOrTheThreads) {
     }
 }
 
+/// Another path for a random actor, from a random time on in one case of two.
+void change_a_path(Watched& watched, std::mt19937& random, Turning turning) {
+    Box near_room;
+    near_room.add(Vec3(-1));
+    near_room.add(Vec3(5, 3.5F, 6));
+    World& world = watched.lined.world;
+    const auto actor = static_cast<Index>(1 + random() % (world.bodies.size() - 1));
+    const Path before = world.bodies[actor].path;
+    Path path = testing::random_path(random, near_room, 1 + static_cast<int>(random() % 4), turning);
+    if (random() % 2 == 0) {
+        // As before up to a time, and a jump then.
+        const double from_s = 0.1 * static_cast<double>(random() % 30);
+        std::erase_if(path.keys, [&](const Key<Pose>& key) { return key.time_s < from_s; });
+        Path joined;
+        for (const Key<Pose>& key : before.keys)
+            if (key.time_s < from_s) joined.keys.push_back(key);
+        joined.keys.push_back({from_s, before.at(from_s)});
+        joined.keys.insert(joined.keys.end(), path.keys.begin(), path.keys.end());
+        path = joined;
+    }
+    world.bodies[actor].path = path;
+    const auto kept =
+        watched.strategy->follow_path({watched.lined.mesh, watched.lined.sight, watched.lined.light,
+                                       watched.lined.caster, watched.background, 0},
+                                      actor, before, Context(2));
+    ASSERT_TRUE(kept.has_value());
+    EXPECT_GE(*kept, 0);
+    EXPECT_LE(*kept, 1);
+}
+
+TEST(Events, FollowChangedPathsAsIfBegunAnew) {
+    for (const Turning turning : {Turning::no, Turning::yes}) {
+        for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+            std::mt19937 random(seed);
+            Watched edited(crowded_room(seed, 1 + static_cast<int>(seed), turning), {16, 16});
+            for (int round = 0; round < 6; ++round) {
+                // In two parts, so that events are known by ranges.
+                const int frame = static_cast<int>(random() % 30);
+                edited.show(frame, {0, 12});
+                edited.show(frame, {12, 32});
+                change_a_path(edited, random, turning);
+                Watched fresh(edited.lined.world, {16, 16});
+                for (const int f : {frame, frame + 1, static_cast<int>(random() % 30)}) {
+                    edited.show(f);
+                    fresh.show(f);
+                    EXPECT_EQ(edited.visible.patch, fresh.visible.patch) << seed << " " << round << " " << f;
+                    EXPECT_EQ(edited.visible.light_contribution, fresh.visible.light_contribution);
+                }
+            }
+        }
+    }
+}
+
+TEST(Events, APathThatIsTheSameInAWindowKeepsAllOfIt) {
+    Watched watched(crowded_room(2, 3, Turning::no), {16, 16});
+    watched.show(3);
+    Path& path = watched.lined.world.bodies[1].path;
+    const Path before = path;
+    ASSERT_EQ(before.keys.back().time_s, 2);
+    path.keys.push_back({3, before.at(0)});
+    const LineScene scene{watched.lined.mesh,   watched.lined.sight, watched.lined.light,
+                          watched.lined.caster, watched.background,  3};
+    EXPECT_EQ(watched.strategy->follow_path(scene, 1, before, Context(2)), 1.0);
+    const Path all_new = path;
+    path.keys = {{0, {Vec3(2, 1, 2), Quat(1, 0, 0, 0)}}, {4, {Vec3(2, 1, 3), Quat(1, 0, 0, 0)}}};
+    const double kept = watched.strategy->follow_path(scene, 1, all_new, Context(2)).value();
+    EXPECT_GT(kept, 0.2);
+    EXPECT_LT(kept, 1);
+}
+
 TEST(Events, GoOnAfterAStop) {
     Watched watched(crowded_room(7, 4, Turning::yes));
     watched.show(2);

@@ -1,0 +1,109 @@
+// Where nothing can change, nothing may flicker: light and picture keep every bit.
+#include "tests/support/flicker.h"
+
+#include <cstring>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "solver/sequence/parts.h"
+#include "tests/support/worlds.h"
+
+namespace afterglow {
+namespace {
+
+SequenceConfig following() {
+    SequenceConfig config;
+    config.visibility = Visibility::events;
+    config.solution = Solution::residual;
+    config.patch_size_m = 0.4;
+    config.rays_per_patch = 64;
+    config.quality = Quality::draft;
+    config.asked_error = 0.02;
+    config.width = 48;
+    config.height = 32;
+    config.revisions = Revisions::final_only;
+    return config;
+}
+
+Picture picture_of(SequenceState& state, int frame) {
+    Picture last;
+    step(
+        state, frame, [&](const Revision& r) { last = r.radiance; }, Context(2));
+    return last;
+}
+
+const std::vector<Rgb>& light_of(SequenceState& state) {
+    return state.parts().kept_light->state->irradiance;
+}
+
+bool same_bits(std::span<const Rgb> a, std::span<const Rgb> b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+/// Walks, rests for a while, and walks on.
+Path with_a_rest(const Vec3& from, const Vec3& here, const Vec3& to, double rest_s, double on_s) {
+    const Quat turned = glm::angleAxis(0.8F, Vec3(0, 1, 0));
+    Path path;
+    path.keys = {{0, {from, Quat(1, 0, 0, 0)}},
+                 {rest_s, {here, turned}},
+                 {on_s, {here, turned}},
+                 {on_s + 1, {to, turned}}};
+    return path;
+}
+
+TEST(Flicker, IsTheDeviationOfIndependentNoise) {
+    std::mt19937 random(3);
+    std::normal_distribution<float> noise(0, 0.05F);
+    Picture even(32, 32);
+    even.pixels.assign(1024, Rgb(2));
+    std::vector<Picture> truth(40, even), shown = truth;
+    for (std::size_t f = 0; f < shown.size(); ++f)
+        for (std::size_t k = 0; k < 1024; ++k) {
+            const auto time = static_cast<float>(f);
+            truth[f].pixels[k] += 0.01F * time;
+            // An error that stays and one that grows evenly count for nothing.
+            shown[f].pixels[k] = truth[f].pixels[k] + Rgb(0.3F + 0.02F * time + noise(random),
+                                                          0.3F + noise(random), noise(random));
+        }
+    const double mean = 2 + 0.01 * 19.5;
+    EXPECT_NEAR(testing::flicker(shown, truth, 1) * mean, 0.05, 0.002);
+    EXPECT_NEAR(testing::flicker(shown, truth, 8) * mean, 0.05 / 8, 0.001);
+    EXPECT_EQ(testing::flicker(truth, truth, 1), 0);
+}
+
+TEST(Flicker, IsNoneWhileAllActorsRest) {
+    World world = testing::small_room();
+    world.bodies[1].path =
+        with_a_rest(Vec3(0.6F, 0.9F, 3), Vec3(3.2F, 0.9F, 2.5F), Vec3(3, 0.9F, 1), 0.4, 0.8);
+    testing::add_actor(world, "other", Vec3(0.2F, 0.2F, 0.3F), 0,
+                       with_a_rest(Vec3(3, 0.5F, 4), Vec3(1, 2, 2), Vec3(1, 0.4F, 4), 0.3, 0.9));
+    // At 24 frames a second both rest from frame 10 to frame 19.
+    for (const double asked : {0.1, 0.02, 0.002}) {
+        SequenceConfig config = following();
+        config.asked_error = asked;
+        SequenceState state = make_state(world, config, Context(2));
+        std::vector<Picture> resting;
+        std::vector<Rgb> light;
+        bool moved = false;
+        Picture before;
+        for (int frame = 0; frame <= 22; ++frame) {
+            Picture picture = picture_of(state, frame);
+            if (frame == 10) light = light_of(state);
+            if (frame >= 10 && frame <= 19) {
+                EXPECT_TRUE(same_bits(light_of(state), light)) << frame;
+                resting.push_back(picture);
+                EXPECT_TRUE(same_bits(picture.pixels, resting[0].pixels)) << frame;
+            } else if (frame > 0) {
+                moved = moved || !same_bits(picture.pixels, before.pixels);
+            }
+            before = std::move(picture);
+        }
+        EXPECT_TRUE(moved);
+        const std::vector<Picture> truth(resting.size(), resting[0]);
+        EXPECT_EQ(testing::flicker(resting, truth, 1), 0) << asked;
+    }
+}
+
+}  // namespace
+}  // namespace afterglow
