@@ -211,9 +211,11 @@ void SampleUpdater::flush(Queue& queue) {
         const LinePacket lines = shadow_lines(queue, i);
         if (lines.alive == 0) continue;
         const bool past_furniture = queue.lines == Lines::past_furniture && i < KeptSample::remembered_lines;
-        const std::uint32_t past =
-            past_furniture ? lines.alive : lines.alive & ~occluded(lines, Scope::static_geometry);
-        const std::uint32_t free = past & ~occluded_by_actors(queue, lines, past);
+        // Where nothing is to be remembered, one look at everything does.
+        const Scope scope = queue.lines == Lines::none_kept ? Scope::everything : Scope::static_geometry;
+        const std::uint32_t past = past_furniture ? lines.alive : lines.alive & ~occluded(lines, scope);
+        const std::uint32_t free =
+            scope == Scope::everything ? past : past & ~occluded_by_actors(queue, lines, past);
         for (std::size_t lane = 0; lane < queue.count; ++lane) {
             if (((past >> lane) & 1U) != 0) {
                 alone[lane] += lines.gain[lane];

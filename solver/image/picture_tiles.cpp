@@ -1,6 +1,7 @@
 #include "solver/image/picture_tiles.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -25,6 +26,50 @@ std::pair<int, int> tiles_between(float low, float high, int count) {
     return {static_cast<int>(std::clamp(std::floor((low - slack_pixels) / edge), 0.0F, last + 1)),
             static_cast<int>(std::clamp(std::floor((high + slack_pixels) / edge), -1.0F, last))};
 }
+
+/// Beyond this many pixels from the picture's corner, edges are too uncertain to leave a tile out by.
+constexpr float farthest_pixels = 1e4F;
+
+/// One edge of a projected triangle: which tiles lie wholly beyond it.
+struct Edge {
+    double across_x = 0, across_y = 0;  ///< unit, away from the triangle
+    double reach = 0;                   ///< of the triangle along it
+
+    Edge(const Vec3& from, const Vec3& to, const Vec3& opposite) {
+        const double x = static_cast<double>(to.y) - from.y, y = static_cast<double>(from.x) - to.x;
+        const double length = std::sqrt(x * x + y * y);
+        if (!(length > 0)) return;
+        const double inwards = x * (opposite.x - from.x) + y * (opposite.y - from.y);
+        across_x = (inwards > 0 ? -x : x) / length;
+        across_y = (inwards > 0 ? -y : y) / length;
+        reach = across_x * from.x + across_y * from.y + slack_pixels;
+    }
+    [[nodiscard]] bool leaves_out(int column, int row) const {
+        constexpr double edge = PictureTiles::edge;
+        const double x = edge * (across_x > 0 ? column : column + 1);
+        const double y = edge * (across_y > 0 ? row : row + 1);
+        return across_x * x + across_y * y > reach;
+    }
+};
+
+/// A projected triangle, told from its bounds where it is near enough.
+class Outline {
+  public:
+    Outline(const Vec3& a, const Vec3& b, const Vec3& c)
+        : edges_{Edge(a, b, c), Edge(b, c, a), Edge(c, a, b)} {
+        for (const Vec3& corner : {a, b, c})
+            if (!(std::abs(corner.x) < farthest_pixels && std::abs(corner.y) < farthest_pixels))
+                is_certain_ = false;
+    }
+    [[nodiscard]] bool leaves_out(int column, int row) const {
+        return is_certain_ && std::any_of(edges_.begin(), edges_.end(),
+                                          [&](const Edge& edge) { return edge.leaves_out(column, row); });
+    }
+
+  private:
+    std::array<Edge, 3> edges_;
+    bool is_certain_ = true;
+};
 
 }  // namespace
 
@@ -52,10 +97,12 @@ std::vector<Index> tiles_covered(const CameraView& view, const PictureTiles& til
         const auto [top, bottom] = std::minmax({a.y, b.y, c.y});
         const auto [first_column, last_column] = tiles_between(left, right, tiles.across);
         const auto [first_row, last_row] = tiles_between(top, bottom, tiles.down);
+        const Outline outline(a, b, c);
         for (int row = first_row; row <= last_row; ++row)
             for (int column = first_column; column <= last_column; ++column)
-                touched[static_cast<std::size_t>(row) * static_cast<std::size_t>(tiles.across) +
-                        static_cast<std::size_t>(column)] = 1;
+                if (!outline.leaves_out(column, row))
+                    touched[static_cast<std::size_t>(row) * static_cast<std::size_t>(tiles.across) +
+                            static_cast<std::size_t>(column)] = 1;
     }
     std::vector<Index> covered;
     for (Index t = 0; t < touched.size(); ++t)

@@ -19,8 +19,8 @@ struct PictureTiles {
     [[nodiscard]] int top(Index tile) const { return static_cast<int>(tile) / across * edge; }
 };
 
-/// The tiles through which camera rays may meet a body that stands at a pose: those that the bounds of its
-/// projected triangles touch, rising. All tiles where a triangle reaches past the camera. Thread-safety:
+/// The tiles through which camera rays may meet a body that stands at a pose: those that its projected
+/// triangles touch, rising. All tiles where a triangle reaches past the camera. Thread-safety:
 /// pure.
 std::vector<Index> tiles_covered(const CameraView& view, const PictureTiles& tiles, const Body& body,
                                  const Pose& pose);

@@ -1,7 +1,9 @@
 #include "solver/radiosity/incremental.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
+#include <utility>
 
 #include "solver/base/error.h"
 #include "solver/radiosity/exchange.h"
@@ -191,6 +193,18 @@ bool change_among(IncrementalState& state, const RadiosityProblem& problem, std:
     darken(state, problem);
     resume(state);
     return true;
+}
+
+void refresh(IncrementalState& state, const RadiosityProblem& problem, const Context& context) {
+    std::vector<Index> all(problem.patches());
+    std::iota(all.begin(), all.end(), Index{0});
+    const double before = std::exchange(state.rounding, 0.0);
+    try {
+        receive(state, problem, all, context);
+    } catch (...) {
+        state.rounding = before;
+        throw;
+    }
 }
 
 void receive(IncrementalState& state, const RadiosityProblem& problem, std::span<const Index> patches,

@@ -54,6 +54,10 @@ void change(IncrementalState& state, const RadiosityProblem& problem, std::span<
 bool change_among(IncrementalState& state, const RadiosityProblem& problem, std::span<const Index> rows,
                   std::span<const std::uint8_t> active, const Context& context);
 
+/// Forgets what rounding has added up to: sets the irradiance of all patches as `receive` does. The state
+/// must stand for `problem`.
+void refresh(IncrementalState& state, const RadiosityProblem& problem, const Context& context);
+
 /// Sets the irradiance of some patches to what has been shot along their rows, F S + H0, and makes unshot
 /// what their radiosity gains by it. The state must stand for `problem`.
 void receive(IncrementalState& state, const RadiosityProblem& problem, std::span<const Index> patches,

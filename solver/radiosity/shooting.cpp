@@ -254,6 +254,36 @@ Certificate shoot_among(ProgressiveState& state, const RadiosityProblem& problem
     return now.certificate;
 }
 
+void shoot_at_once(ProgressiveState& state, const RadiosityProblem& problem, const FormFactorColumns& columns,
+                   const std::vector<Index>& patches, const Context& context) {
+    std::vector<DoubleLanes> received(problem.patches());
+    float shot = 0;
+    for (const Index i : patches) {
+        context.check_stop();
+        const DoubleLanes::Vector light = to_double(to_lanes(state.unshot[i])).v;
+        for (std::uint64_t e = columns.column_begin[i]; e < columns.column_begin[i + 1]; ++e)
+            received[columns.row[e]].v += static_cast<double>(columns.value[e]) * light;
+        state.entries += columns.column_begin[i + 1] - columns.column_begin[i];
+    }
+    const float darkest = darkest_light(problem);
+    for (const Index i : patches) {
+        shot = std::max(shot, largest_magnitude(state.unshot[i]));
+        state.unshot[i] = Rgb(0);
+    }
+    float reflected = 0, unshot = 0;
+    for (std::size_t i = 0; i < problem.patches(); ++i) {
+        const Rgb irradiance = to_rgb({__builtin_convertvector(received[i].v, Lanes::Vector)});
+        state.irradiance[i] = without_darkness(state.irradiance[i] + irradiance, darkest);
+        state.unshot[i] += problem.reflectance[i] * irradiance;
+        reflected = std::max(reflected, largest_magnitude(problem.reflectance[i] * state.irradiance[i]));
+        unshot = std::max(unshot, largest_magnitude(state.unshot[i]));
+    }
+    // Sums in double are rounded once, however many shoot.
+    state.rounding += rounding_of(1, state.enclosure.gain, shot, reflected, unshot);
+    state.shots += patches.size();
+    state.status = ProgressiveStatus::running;
+}
+
 void check_step(const ProgressiveState& state, const RadiosityProblem& problem,
                 const FormFactorColumns& columns, const ProgressiveConfig& config) {
     const std::size_t patches = problem.patches();

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "solver/base/context.h"
 #include "solver/radiosity/certificate.h"
@@ -19,6 +20,12 @@ namespace afterglow {
 Certificate shoot_among(ProgressiveState& state, const RadiosityProblem& problem,
                         const FormFactorColumns& columns, const ProgressiveConfig& config,
                         std::span<const std::uint8_t> active, const Context& context);
+
+/// Some patches, in index order, send all their unshot light along their columns, however many entries these
+/// hold: one batch, after which the state is `running`. Sums in double, so that many batches without a sweep
+/// lose little to rounding. Errors: cancelled leaves the state as it was.
+void shoot_at_once(ProgressiveState& state, const RadiosityProblem& problem, const FormFactorColumns& columns,
+                   const std::vector<Index>& patches, const Context& context);
 
 /// Throws Error{invalid_input} unless state, columns and configuration fit the problem.
 void check_step(const ProgressiveState& state, const RadiosityProblem& problem,

@@ -9,7 +9,7 @@ namespace afterglow {
 
 namespace {
 
-constexpr std::array<Method, 6> all_methods{{
+constexpr std::array<Method, 7> all_methods{{
     {"auto", Visibility::automatic, Solution::automatic, "by what the scene needs, and says which"},
     {"full", Visibility::retrace, Solution::progressive, "everything traced and solved anew at every frame"},
     {"baum86", Visibility::back_buffer, Solution::progressive,
@@ -20,6 +20,8 @@ constexpr std::array<Method, 6> all_methods{{
      "actors in order of depth; light corrected, hidden patches of little consequence waiting"},
     {"events", Visibility::events, Solution::residual,
      "what lines come to see is found ahead, and only what changes is solved"},
+    {"walkthrough", Visibility::back_buffer, Solution::in_view,
+     "for a camera that moves: light is solved where it comes into view or shows there"},
 }};
 
 template <class Value>
@@ -34,12 +36,13 @@ constexpr std::array<Named<Visibility>, 5> visibilities{{
     {"temporal-graph", Visibility::temporal_graph},
     {"events", Visibility::events},
 }};
-constexpr std::array<Named<Solution>, 5> solutions{{
+constexpr std::array<Named<Solution>, 6> solutions{{
     {"auto", Solution::automatic},
     {"progressive", Solution::progressive},
     {"incremental", Solution::incremental},
     {"active-passive", Solution::active_passive},
     {"residual", Solution::residual},
+    {"in-view", Solution::in_view},
 }};
 constexpr std::array<Named<Quality>, 3> qualities{{
     {"draft", Quality::draft},

@@ -25,6 +25,7 @@ enum class Solution {
     incremental,     ///< Chen 1990: the last frame's light, and plus or minus what changes bring
     active_passive,  ///< Tost and Pueyo 1993: likewise, hidden patches of little consequence waiting
     residual,        ///< the last frame's light, corrected where it no longer balances
+    in_view,         ///< the last frame's light, led on as far as what the camera sees next needs it
 };
 
 /// How fine the patches, lines and samples are, in three steps; see QualityLevel.
@@ -72,6 +73,9 @@ struct SequenceConfig {
     /// Where not given, a tenth of the picture's error, and 0 with a solution that is cold every frame. 0:
     /// the picture follows every change.
     std::optional<double> picture_tolerance;
+    /// Frames of the camera's path that an in-view solution prepares at once, 1 to 4096; where something
+    /// besides the camera moves it prepares each frame by itself.
+    int frames_looked_ahead = 24;
     std::uint64_t seed = 1;                ///< of every random choice
     Revisions revisions = Revisions::all;  ///< see Revisions
     Estimate estimate = Estimate::none;    ///< see Estimate

@@ -7,6 +7,7 @@
 #include "solver/formfactor/two_halves.h"
 #include "solver/image/line_noise.h"
 #include "solver/radiosity/ambient.h"
+#include "solver/sequence/camera_ahead.h"
 #include "solver/sequence/patch_roles.h"
 #include "solver/sequence/prepare.h"
 #include "solver/sequence/quality.h"
@@ -42,12 +43,20 @@ void FrameRefinement::look(Index directions, VisibilityStrategy& strategy, const
 }
 
 void FrameRefinement::compile(const Context& context) {
-    if (compiled_ == directions_) return;
+    if (rows_ && rows_->directions == directions_) return;
+    std::vector<Pose> poses = poses_at(parts_.world, time_s_);
+    if (parts_.kept_rows) {
+        rows_ = parts_.kept_rows->rows;
+        if (rows_->directions == directions_ && rows_->poses == poses) return;
+    }
+    auto rows = std::make_shared<CompiledRows>();
+    rows->poses = std::move(poses);
+    rows->directions = directions_;
     const SeenLines seen{parts_.visible.patch, directions_, parts_.visible.light_contribution};
-    factors_ =
+    rows->factors =
         compile_rows(parts_.mesh, *parts_.sight, *parts_.light, parts_.lamps, parts_.caster, seen, context);
-    columns_ = columns_of(factors_.matrix, context);
-    compiled_ = directions_;
+    rows->columns = columns_of(rows->factors.matrix, context);
+    rows_ = std::move(rows);
 }
 
 void FrameRefinement::light_from_outside(std::span<const float> valid_share, std::span<const float> sky,
@@ -59,13 +68,13 @@ void FrameRefinement::light_from_outside(std::span<const float> valid_share, std
 }
 
 RadiosityProblem FrameRefinement::problem() const {
-    return {factors_.matrix, parts_.mesh.area_m2, emission_, reflectance_, outside_};
+    return {rows_->factors.matrix, parts_.mesh.area_m2, emission_, reflectance_, outside_};
 }
 
 void FrameRefinement::prepare_rows(const Context& context) {
     const Stopwatch watch;
     compile(context);
-    light_from_outside(factors_.valid_share, factors_.sky, context);
+    light_from_outside(rows_->factors.valid_share, rows_->factors.sky, context);
     statistics_.visibility += watch.elapsed();
     context.report(0.6, "solving the light");
 }
@@ -73,7 +82,7 @@ void FrameRefinement::prepare_rows(const Context& context) {
 void FrameRefinement::take_rows_light(const ProgressiveState& light, std::uint64_t shots_before) {
     irradiance_ = light.irradiance;
     from_lamps_ = irradiance_from_lamps();
-    valid_share_ = factors_.valid_share;
+    valid_share_ = rows_->factors.valid_share;
     exhausted_ = light.status == ProgressiveStatus::exhausted;
     note_solution(light.shots - shots_before);
 }
@@ -86,7 +95,7 @@ void FrameRefinement::solve(double asked_error, const Context& context) {
     // Cold every time: the same light whatever was solved for a preliminary picture before.
     light_ = make_progressive_state(problem(), context);
     do {
-        certificate_ = step(*light_, problem(), columns_, config, context.part(0.6, 0.8));
+        certificate_ = step(*light_, problem(), rows_->columns, config, context.part(0.6, 0.8));
     } while (light_->status == ProgressiveStatus::running);
     take_rows_light(*light_, 0);
     statistics_.solve += watch.elapsed();
@@ -103,7 +112,22 @@ void FrameRefinement::solve_finally(double asked_error, const Context& context) 
             return follow_active(asked_error, context);
         case Solution::residual:
             return follow_layers(asked_error, context);
+        case Solution::in_view:
+            return follow_view(asked_error, context);
     }
+}
+
+std::vector<Index> FrameRefinement::rows_changed(const KeptRows& kept, const Context& context) const {
+    if (kept.rows == rows_) return {};
+    return changed_rows(kept.rows->factors.matrix, rows_->factors.matrix, context);
+}
+
+/// Leads the incremental solution of the frame before to this frame's problem, or begins one.
+void FrameRefinement::change_incremental(std::optional<KeptRows>& kept, const Context& context) {
+    if (kept)
+        change(*kept->incremental, problem(), rows_changed(*kept, context), context);
+    else
+        kept.emplace().incremental = make_incremental_state(problem(), context);
 }
 
 void FrameRefinement::follow_changes(double asked_error, const Context& context) {
@@ -113,18 +137,14 @@ void FrameRefinement::follow_changes(double asked_error, const Context& context)
     std::optional<KeptRows> kept = std::exchange(parts_.kept_rows, std::nullopt);
     ProgressiveConfig config;
     config.asked_error = asked_error;
-    if (kept) {
-        change(*kept->incremental, problem(), changed_rows(kept->rows, factors_.matrix, context), context);
-        config = following_config(asked_error);
-    } else {
-        kept.emplace().incremental = make_incremental_state(problem(), context);
-    }
+    if (kept) config = following_config(asked_error);
+    change_incremental(kept, context);
     const std::uint64_t shots_before = kept->incremental->shots;
     do {
-        certificate_ = step(*kept->incremental, problem(), columns_, config, context.part(0.6, 0.8));
+        certificate_ = step(*kept->incremental, problem(), rows_->columns, config, context.part(0.6, 0.8));
     } while (kept->incremental->status == ProgressiveStatus::running);
     take_rows_light(*kept->incremental, shots_before);
-    kept->rows = factors_.matrix;
+    kept->rows = rows_;
     statistics_.solve += watch.elapsed();
     parts_.kept_rows = std::move(kept);
 }
@@ -137,19 +157,45 @@ void FrameRefinement::follow_active(double asked_error, const Context& context) 
     ActivePassiveConfig config;
     config.asked_error = asked_error;
     if (kept)
-        change(*kept->active_passive, problem(), changed_rows(kept->rows, factors_.matrix, context),
-               lists.view(), config, context);
+        change(*kept->active_passive, problem(), rows_changed(*kept, context), lists.view(), config, context);
     else
         kept.emplace().active_passive = make_active_passive_state(problem(), lists.view(), config, context);
     ActivePassiveState& light = *kept->active_passive;
     const std::uint64_t shots_before = light.shots;
     do {
-        certificate_ = step(light, problem(), columns_, lists.view(), config, context.part(0.6, 0.8));
+        certificate_ = step(light, problem(), rows_->columns, lists.view(), config, context.part(0.6, 0.8));
     } while (light.status == ProgressiveStatus::running);
     take_rows_light(light, shots_before);
     statistics_.active_patches =
         static_cast<std::uint64_t>(std::count(light.active.begin(), light.active.end(), std::uint8_t{1}));
-    kept->rows = factors_.matrix;
+    kept->rows = rows_;
+    statistics_.solve += watch.elapsed();
+    parts_.kept_rows = std::move(kept);
+}
+
+void FrameRefinement::follow_view(double asked_error, const Context& context) {
+    prepare_rows(context);
+    const Stopwatch watch;
+    std::optional<KeptRows> kept = std::exchange(parts_.kept_rows, std::nullopt);
+    std::optional<KeptView> view;
+    if (kept && kept->rows == rows_) view = std::move(kept->view);
+    change_incremental(kept, context);
+    if (!view || !view->frames.contains(frame_))
+        view = look_ahead(parts_, rows_->factors.matrix, std::move(view), frame_, statistics_.rays_traced,
+                          context);
+    IncrementalState& light = *kept->incremental;
+    const std::uint64_t shots_before = light.shots;
+    // As long as nothing changes and the view is known, nothing is to be done.
+    if (light.status == ProgressiveStatus::running || !view->certificate)
+        view->certificate = step_in_view(light, problem(), rows_->columns, view->rows, view->seen,
+                                         {.asked_error = asked_error}, context.part(0.6, 0.8));
+    certificate_ = *view->certificate;
+    take_rows_light(light, shots_before);
+    statistics_.active_patches =
+        static_cast<std::uint64_t>(std::count_if(view->rows.group.begin(), view->rows.group.end(),
+                                                 [&](Index group) { return view->seen[group] != 0; }));
+    kept->rows = rows_;
+    kept->view = std::move(view);
     statistics_.solve += watch.elapsed();
     parts_.kept_rows = std::move(kept);
 }
@@ -203,8 +249,9 @@ void FrameRefinement::note_solution(std::uint64_t shots) {
 std::vector<Rgb> FrameRefinement::irradiance_from_lamps() const {
     std::vector<Rgb> irradiance(parts_.mesh.size(), Rgb(0));
     for (const Index lamp : parts_.lamps.patches)
-        for (std::uint64_t k = columns_.column_begin[lamp]; k < columns_.column_begin[lamp + 1]; ++k)
-            irradiance[columns_.row[k]] += columns_.value[k] * emission_[lamp];
+        for (std::uint64_t k = rows_->columns.column_begin[lamp]; k < rows_->columns.column_begin[lamp + 1];
+             ++k)
+            irradiance[rows_->columns.row[k]] += rows_->columns.value[k] * emission_[lamp];
     return irradiance;
 }
 
@@ -280,7 +327,7 @@ void FrameRefinement::estimate_error(const Picture& final_picture, const Context
     context.report(0.9, "estimating the picture's error");
     compile(context);
     const SeenLines seen{parts_.visible.patch, directions_, parts_.visible.light_contribution};
-    const auto differences = half_differences(*parts_.sight, parts_.lamps, seen, factors_, radiosity(),
+    const auto differences = half_differences(*parts_.sight, parts_.lamps, seen, rows_->factors, radiosity(),
                                               pi * parts_.world.background, context);
     const DirectLight direct = direct_light();
     const PathScene scene{&parts_.world, &parts_.caster, materials_,

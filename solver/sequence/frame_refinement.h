@@ -42,6 +42,9 @@ class FrameRefinement {
     void follow_layers(double asked_error, const Context& context);
     void follow_changes(double asked_error, const Context& context);
     void follow_active(double asked_error, const Context& context);
+    void follow_view(double asked_error, const Context& context);
+    void change_incremental(std::optional<KeptRows>& kept, const Context& context);
+    [[nodiscard]] std::vector<Index> rows_changed(const KeptRows& kept, const Context& context) const;
     void take_rows_light(const ProgressiveState& light, std::uint64_t shots_before);
     void note_solution(std::uint64_t shots);
     [[nodiscard]] RadiosityProblem problem() const;
@@ -60,9 +63,7 @@ class FrameRefinement {
     std::vector<Rgb> from_lights_;  ///< irradiance by the lights without a surface
     std::vector<Rgb> outside_;      ///< and by the sky
     Index directions_ = 0;
-    Index compiled_ = 0;  ///< directions that the rows were made from
-    FormFactors factors_;
-    FormFactorColumns columns_;
+    std::shared_ptr<const CompiledRows> rows_;
     std::optional<ProgressiveState> light_;
     std::vector<Rgb> irradiance_;     ///< of the latest solution
     std::vector<Rgb> from_lamps_;     ///< the part of it that comes from lamps straight

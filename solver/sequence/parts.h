@@ -4,9 +4,11 @@
 #include <optional>
 
 #include "solver/base/hash.h"
+#include "solver/formfactor/rows.h"
 #include "solver/image/kept_picture.h"
 #include "solver/mesh/interpolation.h"
 #include "solver/radiosity/active_passive.h"
+#include "solver/radiosity/in_view.h"
 #include "solver/radiosity/residual.h"
 #include "solver/sequence/sequence.h"
 #include "solver/visibility/strategy.h"
@@ -19,11 +21,28 @@ struct KeptLight {
     std::optional<ResidualState> state;
 };
 
-/// The same for solutions that work on rows compiled anew.
+/// Rows as lines show them while every body stands at one place.
+struct CompiledRows {
+    std::vector<Pose> poses;  ///< by body
+    Index directions = 0;     ///< of every patch that they are made from
+    FormFactors factors;
+    FormFactorColumns columns;
+};
+
+/// What an in-view solution knows of the camera's path.
+struct KeptView {
+    GroupedRows rows;
+    FrameSpan frames;                             ///< that it has looked at
+    std::vector<std::uint8_t> seen;               ///< by group, in any of them
+    std::optional<Certificate> certificate = {};  ///< of what is seen, once it is solved
+};
+
+/// The same for solutions that work on compiled rows. These stay while nothing but the camera moves.
 struct KeptRows {
-    FormFactorMatrix rows;
+    std::shared_ptr<const CompiledRows> rows;
     std::optional<IncrementalState> incremental;
     std::optional<ActivePassiveState> active_passive;
+    std::optional<KeptView> view;
 };
 
 /// What a sequence keeps from frame to frame. Parts point at each other, so they stay where they are: behind

@@ -9,16 +9,8 @@ constexpr int looks_down = 90;
 
 }  // namespace
 
-PatchRoleLists roles_at(const SequenceState::Parts& parts, int frame, std::uint64_t& rays_traced,
-                        const Context& context) {
-    const PatchMesh& mesh = parts.mesh;
-    PatchRoleLists roles;
-    roles.seen.assign(mesh.size(), 0);
-    roles.object = mesh.body;
-    roles.surface = mesh.surface;
-    for (Index p = 0; p < mesh.size(); ++p)
-        roles.moving.push_back(static_cast<std::uint8_t>(parts.world.bodies[mesh.body[p]].path.moves()));
-
+std::uint64_t look_through_camera(const SequenceState::Parts& parts, int frame, const Context& context,
+                                  const std::function<void(const Ray&, const Hit&)>& see) {
     const CameraView view = view_at(parts.camera, parts.time_of(frame), looks_across, looks_down);
     RayPacket rays;
     HitPacket hits;
@@ -30,13 +22,26 @@ PatchRoleLists roles_at(const SequenceState::Parts& parts, int frame, std::uint6
                 rays.set(lane, view.ray(static_cast<float>(x) + static_cast<float>(lane) + 0.5F,
                                         static_cast<float>(y) + 0.5F));
             parts.caster.nearest(rays, Scope::everything, hits);
-            for (Index lane = 0; lane < block_size; ++lane) {
-                const Index patch = target_of(hits[lane], rays.ray(lane), mesh, parts.caster);
-                if (patch < mesh.size()) roles.seen[patch] = 1;
-            }
+            for (Index lane = 0; lane < block_size; ++lane) see(rays.ray(lane), hits[lane]);
         }
     }
-    rays_traced += looks_across * looks_down;
+    return looks_across * looks_down;
+}
+
+PatchRoleLists roles_at(const SequenceState::Parts& parts, int frame, std::uint64_t& rays_traced,
+                        const Context& context) {
+    const PatchMesh& mesh = parts.mesh;
+    PatchRoleLists roles;
+    roles.seen.assign(mesh.size(), 0);
+    roles.object = mesh.body;
+    roles.surface = mesh.surface;
+    for (Index p = 0; p < mesh.size(); ++p)
+        roles.moving.push_back(static_cast<std::uint8_t>(parts.world.bodies[mesh.body[p]].path.moves()));
+
+    rays_traced += look_through_camera(parts, frame, context, [&](const Ray& ray, const Hit& hit) {
+        const Index patch = target_of(hit, ray, mesh, parts.caster);
+        if (patch < mesh.size()) roles.seen[patch] = 1;
+    });
     return roles;
 }
 

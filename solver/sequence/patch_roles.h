@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "solver/radiosity/roles.h"
@@ -15,6 +16,11 @@ struct PatchRoleLists {
 
     [[nodiscard]] PatchRoles view() const { return {seen, moving, object, surface}; }
 };
+
+/// Calls `see` for each of 160 × 90 rays of a frame's camera and what it meets, the bodies standing where the
+/// caster has them. Returns the number of rays. Errors: cancelled.
+std::uint64_t look_through_camera(const SequenceState::Parts& parts, int frame, const Context& context,
+                                  const std::function<void(const Ray&, const Hit&)>& see);
 
 /// Roles at a frame for which the caster has placed the bodies. A patch is seen if one of 160 × 90 camera
 /// rays meets it; smaller ones may be missed, which delays what they shoot and costs nothing else. Moving: on

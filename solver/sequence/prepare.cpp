@@ -52,6 +52,8 @@ void check(const SequenceConfig& config) {
             "size", "must be from 1 to 16384 pixels each way");
     require(config.frames_per_second >= 0 && std::isfinite(config.frames_per_second), "fps",
             "must be above 0");
+    require(config.frames_looked_ahead >= 1 && config.frames_looked_ahead <= 4096, "frames_looked_ahead",
+            "must be from 1 to 4096");
     require(config.frames_expected >= 0, "frames_expected", "must be 0 or more");
     require(!config.exposure_ev || std::abs(*config.exposure_ev) <= 64, "exposure",
             "must be from -64 to 64 stops");

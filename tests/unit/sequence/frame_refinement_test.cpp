@@ -69,8 +69,8 @@ TEST(FollowingFrames, FollowedLightIsTheColdOneWithinItsPromise) {
 
 TEST(FollowingFrames, EverySolutionsLightIsTheColdOneWithinItsPromise) {
     const Context context(2);
-    for (const Solution solution :
-         {Solution::progressive, Solution::incremental, Solution::active_passive, Solution::residual}) {
+    for (const Solution solution : {Solution::progressive, Solution::incremental, Solution::active_passive,
+                                    Solution::residual, Solution::in_view}) {
         SequenceConfig config = quick();
         config.visibility = Visibility::back_buffer;
         config.solution = solution;
