@@ -18,7 +18,7 @@ struct ServeConfig {
         data_folder;               ///< uploads, pictures, cache; empty: a temporary one, removed at the end
     int threads = 0;               ///< for the solver; 0: one a core
     std::size_t max_resident = 4;  ///< jobs that are computed in turn, each with its state in memory
-    std::size_t max_connections = 64;       ///< answered at a time; further ones wait
+    std::size_t max_connections = 256;      ///< answered at a time; more are told 503
     Limits limits;                          ///< what a client may ask for
     AccessLog access_log = AccessLog::off;  ///< whether each request is told on standard error
 };

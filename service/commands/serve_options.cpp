@@ -26,7 +26,7 @@ void declare_options(CLI::App& app, Typed& typed) {
     app.add_option("--data", typed.data, "Folder for uploads, pictures and cache [a temporary one]");
     app.add_option("--threads", typed.threads, "Threads to solve with [one a core]");
     app.add_option("--resident-jobs", typed.resident_jobs, "Jobs whose state is in memory at a time [4]");
-    app.add_option("--connections", typed.connections, "Connections answered at a time [64]");
+    app.add_option("--connections", typed.connections, "Connections answered at a time [256]");
     app.add_flag("--access-log", typed.access_log, "Tell each request on standard error");
 }
 
