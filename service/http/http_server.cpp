@@ -97,9 +97,9 @@ Reply too_many_streams() {
 
 /// A body received in parts, up to a limit. Past it the rest is taken and thrown away, so that the client
 /// gets to read the reply; past twice the limit nothing more is taken.
-class Body {
+class ReceivedBody {
   public:
-    explicit Body(std::size_t limit) : limit_(limit) {}
+    explicit ReceivedBody(std::size_t limit) : limit_(limit) {}
 
     bool take(const char* data, std::size_t size) {
         seen_ += size;
@@ -224,7 +224,7 @@ class HttpServer::Parts {
         Request request = to_request(from);
         if (!is_admitted(request, response)) return;
         if (has_body(from)) {
-            Body body(config_.max_body_bytes);
+            ReceivedBody body(config_.max_body_bytes);
             const auto take = [&](const char* data, std::size_t size) { return body.take(data, size); };
             // Forms are no part of the interface, but must be read to their end before they are refused.
             const bool complete = from.is_multipart_form_data()
