@@ -67,10 +67,32 @@ std::string_view title_of(int status) {
             return "Unsupported Media Type";
         case 422:
             return "Unprocessable Content";
+        case 401:
+            return "Unauthorized";
+        case 403:
+            return "Forbidden";
+        case 412:
+            return "Precondition Failed";
+        case 417:
+            return "Expectation Failed";
+        case 421:
+            return "Misdirected Request";
         case 425:
             return "Too Early";
+        case 428:
+            return "Precondition Required";
+        case 429:
+            return "Too Many Requests";
+        case 431:
+            return "Request Header Fields Too Large";
         case 500:
             return "Internal Server Error";
+        case 501:
+            return "Not Implemented";
+        case 505:
+            return "HTTP Version Not Supported";
+        case 507:
+            return "Insufficient Storage";
         case 503:
             return "Service Unavailable";
         default:

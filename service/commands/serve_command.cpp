@@ -1,15 +1,21 @@
 #include "service/commands/serve_command.h"
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "service/api/service.h"
+#include "service/http/gate.h"
+#include "service/store/data_lock.h"
 #include "solver/base/error.h"
+#include "solver/base/file.h"
 
 namespace afterglow {
 
@@ -49,15 +55,32 @@ std::string shown_address(const std::string& address) {
     return address.find(':') == std::string::npos ? address : "[" + address + "]";
 }
 
+Gate gate_of(const ServeConfig& config) {
+    GateConfig gate{config.hosts, nullptr};
+    if (!config.token_file.empty()) {
+        const std::string place = config.token_file.string();
+        gate.tokens = std::make_shared<const TokenList>(TokenList::read(read_file(place), place));
+    } else if (!is_loopback(config.address)) {
+        throw Error(ErrorKind::invalid_input, "--listen",
+                    "others can reach " + config.address + ", so --token-file is needed");
+    }
+    return make_gate(std::move(gate));
+}
+
 }  // namespace
 
 int serve(const ServeConfig& config, const std::stop_token& stop) {
+    Gate gate = gate_of(config);
     std::optional<TemporaryFolder> temporary;
     if (config.data_folder.empty()) temporary.emplace();
-    Service service({temporary ? temporary->path() : config.data_folder, config.threads, config.max_resident,
-                     config.limits});
-    HttpServer server(service.router(), {config.address, config.port, config.max_connections,
-                                         config.limits.upload_bytes, config.access_log});
+    const std::filesystem::path data = temporary ? temporary->path() : config.data_folder;
+    const DataLock lock(data);
+    Service service({data, config.threads, config.max_resident, config.limits});
+    HttpServerConfig http{config.address, config.port, config.max_connections, config.limits.upload_bytes,
+                          config.access_log};
+    http.max_streams = std::max<std::size_t>(config.max_connections * 3 / 4, 1);
+    http.gate = std::move(gate);
+    HttpServer server(service.router(), std::move(http));
     const int port = server.start();
     std::cout << "listening on http://" << shown_address(config.address) << ":" << port << std::endl;
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -16,7 +17,8 @@ using Text = std::optional<std::string>;
 
 /// The options as they were typed; absent where not given.
 struct Typed {
-    Text listen, data, threads, resident_jobs, connections;
+    Text listen, data, threads, resident_jobs, connections, token_file;
+    std::vector<std::string> hosts;
     bool access_log = false;
 };
 
@@ -26,7 +28,12 @@ void declare_options(CLI::App& app, Typed& typed) {
     app.add_option("--data", typed.data, "Folder for uploads, pictures and cache [a temporary one]");
     app.add_option("--threads", typed.threads, "Threads to solve with [one a core]");
     app.add_option("--resident-jobs", typed.resident_jobs, "Jobs whose state is in memory at a time [4]");
-    app.add_option("--connections", typed.connections, "Connections answered at a time [64]");
+    app.add_option("--connections", typed.connections, "Connections answered at a time [256]");
+    app.add_option(
+        "--token-file", typed.token_file,
+        "Who may use it, a line each: NAME viewer|submitter|admin TOKEN [LIMIT=N ...] [everybody]");
+    app.add_option("--host", typed.hosts, "A name it is reached by, besides localhost; may be repeated")
+        ->allow_extra_args(false);
     app.add_flag("--access-log", typed.access_log, "Tell each request on standard error");
 }
 
@@ -66,6 +73,12 @@ std::variant<ServeConfig, HelpText> read_serve_options(std::span<const char* con
     if (typed.connections)
         config.max_connections =
             static_cast<std::size_t>(whole_number("--connections", *typed.connections, 1, 10000));
+    if (typed.token_file) {
+        if (typed.token_file->empty())
+            throw Error(ErrorKind::invalid_input, "--token-file", "the path is empty");
+        config.token_file = *typed.token_file;
+    }
+    config.hosts = typed.hosts;
     if (typed.access_log) config.access_log = AccessLog::on;
     return config;
 }

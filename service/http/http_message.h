@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "service/base/problem.h"
+#include "service/http/client.h"
 #include "solver/base/json.h"
 
 namespace afterglow {
@@ -21,6 +22,7 @@ struct Request {
     std::map<std::string, std::string> query;    ///< decoded; of repeated names the first
     std::map<std::string, std::string> headers;  ///< names in lower case; of repeated names the first
     std::string body;
+    Client client = {};  ///< as the gate found
 
     /// A header by its lower-case name, or a query parameter; empty where there is none.
     [[nodiscard]] std::string header(const std::string& name) const;

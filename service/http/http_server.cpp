@@ -1,9 +1,10 @@
 #include "service/http/http_server.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cctype>
 #include <chrono>
-#include <cstring>
 #include <iostream>
 #include <thread>
 #include <utility>
@@ -11,6 +12,7 @@
 #include <httplib.h>
 
 #include "service/base/console.h"
+#include "service/http/guarded_server.h"
 #include "service/http/http_message.h"
 #include "solver/base/error.h"
 
@@ -18,19 +20,8 @@ namespace afterglow {
 
 namespace {
 
-// A reader that takes nothing for this long is given up. This and the next are also how long a stop may take.
-constexpr int write_timeout_s = 8;
-constexpr int keep_alive_timeout_s = 2;
-constexpr int keep_alive_requests = 1000;
-// What open streams get at a stop to send their last piece; the library would cut them off.
+// What open streams get at a stop to send their last piece; they are cut off then.
 constexpr std::chrono::seconds stop_grace{2};
-
-/// The library's default also sets SO_REUSEPORT, with which two servers share a port and each gets some of
-/// the requests; here the second one must fail.
-void set_socket_options(socket_t socket) {
-    const int yes = 1;
-    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-}
 
 bool has_body(const httplib::Request& request) {
     // Without either header a body has no end but the connection's, so there is none.
@@ -72,9 +63,20 @@ httplib::ContentProviderWithoutLength provider_of(std::shared_ptr<ReplyStream> s
     };
 }
 
+/// Nothing that is sent here may be framed, guessed at or mixed with other sites' content.
+constexpr std::array<std::pair<const char*, const char*>, 4> careful_headers{{
+    {"Content-Security-Policy",
+     "default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"Referrer-Policy", "no-referrer"},
+    {"Cross-Origin-Resource-Policy", "same-origin"},
+}};
+
 void send(Reply reply, const StreamToken& token, httplib::Response& to) {
     to.status = reply.status;
     for (const auto& [name, value] : reply.headers) to.set_header(name, value);
+    for (const auto& [name, value] : careful_headers)
+        if (!to.has_header(name)) to.set_header(name, value);
     if (reply.stream) {
         to.set_chunked_content_provider(reply.content_type, provider_of(std::move(reply.stream), token));
         return;
@@ -87,11 +89,17 @@ std::string code_of_status(int status) {
     return status == 413 ? "too_large" : status == 415 ? "unsupported_media_type" : "bad_request";
 }
 
+Reply too_many_streams() {
+    Reply reply = problem_reply({503, "too_many_streams", "too many streams are open; try again", ""});
+    reply.headers.emplace_back("Retry-After", "5");
+    return reply;
+}
+
 /// A body received in parts, up to a limit. Past it the rest is taken and thrown away, so that the client
 /// gets to read the reply; past twice the limit nothing more is taken.
-class Body {
+class ReceivedBody {
   public:
-    explicit Body(std::size_t limit) : limit_(limit) {}
+    explicit ReceivedBody(std::size_t limit) : limit_(limit) {}
 
     bool take(const char* data, std::size_t size) {
         seen_ += size;
@@ -114,8 +122,9 @@ class Body {
 
 class HttpServer::Parts {
   public:
-    Parts(const Router& router, HttpServerConfig config) : router_(router), config_(std::move(config)) {
-        set_up_connections();
+    Parts(const Router& router, HttpServerConfig config)
+        : router_(router), config_(std::move(config)), server_(guard_of(config_)) {
+        server_.set_payload_max_length(config_.max_body_bytes);
         set_up_handlers();
     }
     ~Parts() { stop(); }
@@ -123,9 +132,7 @@ class HttpServer::Parts {
     Parts& operator=(const Parts&) = delete;
 
     int start() {
-        const int port = config_.port == 0 ? server_.bind_to_any_port(config_.address)
-                         : server_.bind_to_port(config_.address, config_.port) ? config_.port
-                                                                               : -1;
+        const int port = server_.bind(config_.address, config_.port);
         if (port < 0)
             throw Error(ErrorKind::io, config_.address + ":" + std::to_string(config_.port),
                         "this address cannot be listened on; another program may have it");
@@ -139,32 +146,31 @@ class HttpServer::Parts {
         return port;
     }
 
+    void keep(const std::weak_ptr<void>& self) { server_.keep(self); }
+
     void stop() {
+        if (has_stopped_.exchange(true)) return;
         const auto give_up = std::chrono::steady_clock::now() + stop_grace;
         while (token_.use_count() > 1 && std::chrono::steady_clock::now() < give_up)
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        server_.stop();
+        server_.stop_listening();
         if (listener_.joinable()) listener_.join();
+        // Connections whose provider sleeps on keep these parts alive. Routes do not: they are waited for.
+        if (!server_.end_connections(stop_grace))
+            while (routing_.use_count() > 1) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
 
     [[nodiscard]] bool is_running() const { return server_.is_running() && !has_ended_; }
 
   private:
-    void set_up_connections() {
-        server_.set_socket_options(set_socket_options);
-        server_.set_tcp_nodelay(true);  // events are small and must not wait for each other
-        server_.set_write_timeout(write_timeout_s);
-        server_.set_keep_alive_timeout(keep_alive_timeout_s);
-        server_.set_keep_alive_max_count(keep_alive_requests);
-        server_.set_payload_max_length(config_.max_body_bytes);
-        server_.new_task_queue = [threads = config_.max_connections] {
-            return new httplib::ThreadPool(threads);
-        };
+    static GuardConfig guard_of(const HttpServerConfig& config) {
+        GuardConfig guard{config.max_connections, config.patience, {}};
+        guard.head.body_bytes = config.max_body_bytes;
+        return guard;
     }
 
     void set_up_handlers() {
         server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-            ignore_ranges(request);
             if (is_method_with_body(request.method)) return httplib::Server::HandlerResponse::Unhandled;
             answer(to_request(request), response);
             return httplib::Server::HandlerResponse::Handled;
@@ -194,21 +200,31 @@ class HttpServer::Parts {
             });
     }
 
-    /// Pictures and problems are sent whole: the library would cut a reply of any status to the range asked
-    /// for.
-    static void ignore_ranges(const httplib::Request& request) {
-        const_cast<httplib::Request&>(request).ranges.clear();
+    void answer(Request request, httplib::Response& response) const {
+        const StreamToken routing = routing_;
+        if (!is_admitted(request, response)) return;
+        Reply reply = router_.handle(request);
+        // Other requests must find a place however many watch.
+        if (reply.stream && static_cast<std::size_t>(token_.use_count()) > config_.max_streams)
+            reply = too_many_streams();
+        send(std::move(reply), token_, response);
     }
 
-    void answer(const Request& request, httplib::Response& response) const {
-        send(router_.handle(request), token_, response);
+    bool is_admitted(Request& request, httplib::Response& response) const {
+        if (!config_.gate) return true;
+        auto refusal = config_.gate(request);
+        if (!refusal) return true;
+        send(*std::move(refusal), {}, response);
+        return false;
     }
 
     void receive_body(const httplib::Request& from, httplib::Response& response,
                       const httplib::ContentReader& reader) const {
+        const StreamToken routing = routing_;
         Request request = to_request(from);
+        if (!is_admitted(request, response)) return;
         if (has_body(from)) {
-            Body body(config_.max_body_bytes);
+            ReceivedBody body(config_.max_body_bytes);
             const auto take = [&](const char* data, std::size_t size) { return body.take(data, size); };
             // Forms are no part of the interface, but must be read to their end before they are refused.
             const bool complete = from.is_multipart_form_data()
@@ -223,7 +239,7 @@ class HttpServer::Parts {
             }
             request.body = body.take_bytes();
         }
-        answer(request, response);
+        send(router_.handle(request), token_, response);
     }
 
     static constexpr const char* any_path = R"([\s\S]*)";
@@ -231,14 +247,21 @@ class HttpServer::Parts {
     const Router& router_;
     HttpServerConfig config_;
     StreamToken token_ = std::make_shared<const char>();
-    httplib::Server server_;
+    StreamToken routing_ = std::make_shared<const char>();  ///< held by whoever is in a route or gate
+    std::atomic<bool> has_stopped_ = false;
+    GuardedServer server_;
     std::thread listener_;
     std::atomic<bool> has_ended_ = false;
 };
 
 HttpServer::HttpServer(const Router& router, HttpServerConfig config)
-    : parts_(std::make_unique<Parts>(router, std::move(config))) {}
-HttpServer::~HttpServer() = default;
+    : parts_(std::make_shared<Parts>(router, std::move(config))) {
+    parts_->keep(parts_);
+}
+
+HttpServer::~HttpServer() {
+    stop();
+}
 
 int HttpServer::start() {
     return parts_->start();

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "service/http/connection.h"
 #include "service/http/router.h"
 
 namespace afterglow {
@@ -11,12 +14,19 @@ namespace afterglow {
 /// Whether each request is told in one line on standard error.
 enum class AccessLog { off, on };
 
+/// Looks at a request before its body is received, may note who it comes from, and returns a reply where it
+/// is refused. Called from any number of threads.
+using Gate = std::function<std::optional<Reply>(Request&)>;
+
 struct HttpServerConfig {
     std::string address = "127.0.0.1";  ///< to listen on
     int port = 0;                       ///< 0: any free one
-    std::size_t max_connections = 64;   ///< answered at a time, streams included; further ones wait
+    std::size_t max_connections = 256;  ///< answered at a time, streams included; more are told 503
     std::size_t max_body_bytes = std::size_t{256} << 20U;  ///< also after decompression; larger ones are 413
     AccessLog access_log = AccessLog::off;                 ///< see AccessLog
+    Patience patience = {};                                ///< how long a peer may take
+    std::size_t max_streams = 192;                         ///< open at a time; more are told 503
+    Gate gate = {};                                        ///< may refuse a request; empty: none is refused
 };
 
 /// Carries requests to a router and its replies back. The only user of the HTTP library.
@@ -32,14 +42,14 @@ class HttpServer {
     /// Takes the address and begins to answer; returns the port. Errors: io where the address cannot be had,
     /// for example because another program listens there.
     int start();
-    /// Ends: streams that have an end within two seconds at it, others at their next piece, other replies
-    /// when they are sent. Returns when all is quiet.
+    /// Ends within seconds whatever the peers do: streams that have an end within two seconds at it, all
+    /// other connections are then shut down. A provider that sleeps on is left to itself.
     void stop();
     [[nodiscard]] bool is_running() const;
 
   private:
     class Parts;
-    std::unique_ptr<Parts> parts_;
+    std::shared_ptr<Parts> parts_;
 };
 
 }  // namespace afterglow

@@ -19,7 +19,7 @@ FOREIGN = {
     r"glm/": ["solver/base/math.h"],
     r"nlohmann/": ["solver/base/json.h", "one of client/"],
     r"xxhash\.h": ["one of solver/base/"],
-    r"httplib\.h": ["one of service/", "one of client/", "tests/"],
+    r"httplib\.h": ["service/http/", "one of client/", "tests/"],
     r"CLI/": ["service/", "client/"],
     r"sqlite3\.h|SQLiteCpp/": ["one of service/"],
 }

@@ -1,6 +1,5 @@
 #include "service/http/http_server.h"
 
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "service/api/service.h"
 #include "solver/base/error.h"
 #include "tests/unit/service/fake_solver.h"
+#include "tests/unit/service/peer.h"
 
 // The service through real sockets on the loopback interface.
 
@@ -59,44 +59,8 @@ class HttpServerTest : public testing::Test {
     int port_ = 0;
 };
 
-/// A plain TCP connection to the loopback interface.
-class Connection {
-  public:
-    explicit Connection(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
-        sockaddr_in address{};
-        address.sin_family = AF_INET;
-        address.sin_port = htons(static_cast<std::uint16_t>(port));
-        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        connected_ = ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-        const timeval longest{60, 0};
-        ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &longest, sizeof longest);
-    }
-    ~Connection() { ::close(socket_); }
-    Connection(const Connection&) = delete;
-    Connection& operator=(const Connection&) = delete;
-
-    bool send(const std::string& bytes) const {
-        return connected_ && ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) ==
-                                 static_cast<ssize_t>(bytes.size());
-    }
-    std::string receive_until(const std::string& enough) const {
-        std::string all;
-        std::array<char, 4096> part{};
-        while (all.find(enough) == std::string::npos) {
-            const auto size = ::recv(socket_, part.data(), part.size(), 0);
-            if (size <= 0) break;
-            all.append(part.data(), static_cast<std::size_t>(size));
-        }
-        return all;
-    }
-
-  private:
-    int socket_;
-    bool connected_ = false;
-};
-
 std::string HttpServerTest::raw(const std::string& bytes, const std::string& enough) const {
-    const Connection connection(port_);
+    const Peer connection(port_);
     EXPECT_TRUE(connection.send(bytes));
     return connection.receive_until(enough);
 }
@@ -151,10 +115,10 @@ TEST_F(HttpServerTest, AChunkedBodyIsLimitedToo) {
     EXPECT_THAT(raw(request + "0\r\n\r\n", "}"), StartsWith("HTTP/1.1 413"));
 }
 
-TEST_F(HttpServerTest, ACompressedBodyIsLimitedByWhatItUnpacksTo) {
+TEST_F(HttpServerTest, ACompressedBodyIsRefusedBeforeItIsUnpacked) {
     const auto http = client();
     http->set_compress(true);
-    EXPECT_EQ(http->Post("/v1/scenes", std::string(body_limit + 1, 'x'), "text/plain")->status, 413);
+    EXPECT_EQ(http->Post("/v1/scenes", std::string(body_limit + 1, 'x'), "text/plain")->status, 415);
 }
 
 TEST_F(HttpServerTest, APostWithoutABodyDoesNotWaitForOne) {
@@ -208,9 +172,9 @@ TEST_F(HttpServerTest, AnswersWhileManyStreamsAreOpen) {
     solver_.close();
     const std::string id = submit(R"({"frames":"0"})");
     const std::string request = "GET /v1/jobs/" + id + "/events HTTP/1.1\r\nHost: x\r\n\r\n";
-    std::vector<std::unique_ptr<Connection>> streams;
+    std::vector<std::unique_ptr<Peer>> streams;
     for (int i = 0; i < 16; ++i) {
-        streams.push_back(std::make_unique<Connection>(port_));
+        streams.push_back(std::make_unique<Peer>(port_));
         ASSERT_TRUE(streams.back()->send(request));
         EXPECT_THAT(streams.back()->receive_until("event: snapshot"), StartsWith("HTTP/1.1 200"));
     }
@@ -224,7 +188,7 @@ TEST_F(HttpServerTest, AReaderThatGoesAwayHarmsNobody) {
     solver_.close();
     const std::string id = submit(R"({"frames":"0-5"})");
     for (int i = 0; i < 40; ++i) {  // more than there are connections at a time
-        const Connection connection(port_);
+        const Peer connection(port_);
         ASSERT_TRUE(connection.send("GET /v1/jobs/" + id + (i % 2 == 0 ? "/events" : "/live") +
                                     " HTTP/1.1\r\nHost: x\r\n\r\n"));
         connection.receive_until("\r\n\r\n");
@@ -237,7 +201,7 @@ TEST_F(HttpServerTest, AReaderThatGoesAwayHarmsNobody) {
 TEST_F(HttpServerTest, AReaderThatNeverReadsDoesNotHoldTheJobUp) {
     solver_.close();
     const std::string id = submit(R"({"frames":"0-50"})");
-    const Connection asleep(port_);
+    const Peer asleep(port_);
     ASSERT_TRUE(asleep.send("GET /v1/jobs/" + id + "/live HTTP/1.1\r\nHost: x\r\n\r\n"));
     solver_.open();
     EXPECT_THAT(client()->Get("/v1/jobs/" + id + "/events?last_event_id=0")->body,
@@ -269,9 +233,9 @@ TEST_F(HttpServerTest, TwoJobsInterleave) {
 TEST_F(HttpServerTest, OpenStreamsAreToldTheEndAtAStop) {
     solver_.close();
     const std::string id = submit(R"({"frames":"0"})");
-    std::vector<std::unique_ptr<Connection>> streams;
+    std::vector<std::unique_ptr<Peer>> streams;
     for (int i = 0; i < 8; ++i) {
-        streams.push_back(std::make_unique<Connection>(port_));
+        streams.push_back(std::make_unique<Peer>(port_));
         ASSERT_TRUE(streams.back()->send("GET /v1/jobs/" + id + "/events HTTP/1.1\r\nHost: x\r\n\r\n"));
         streams.back()->receive_until("event: snapshot");
     }
@@ -288,7 +252,7 @@ TEST_F(HttpServerTest, OpenStreamsAreToldTheEndAtAStop) {
 TEST_F(HttpServerTest, AStopDoesNotWaitForAReaderThatNeverReads) {
     solver_.close();
     const std::string id = submit(R"({"frames":"0"})");
-    const Connection asleep(port_);
+    const Peer asleep(port_);
     ASSERT_TRUE(asleep.send("GET /v1/jobs/" + id + "/live HTTP/1.1\r\nHost: x\r\n\r\n"));
     // Without an end in sight the stream is cut off: the service itself runs on.
     server_.stop();
