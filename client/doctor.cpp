@@ -50,9 +50,10 @@ Finding check_access(HttpConnection& connection, const std::string& token) {
     const HttpReply reply = connection.get("/v1/jobs");
     if (reply.status == 200)
         return {Finding::Mark::well, "access", token.empty() ? "without a token" : "with the token"};
-    const std::string advice = token.empty() ? "; give a token: --token-file, or AFTERGLOW_TOKEN" : "";
+    if (reply.status == 401 && token.empty())
+        return {Finding::Mark::note, "access", "the server wants a token: --token-file, or AFTERGLOW_TOKEN"};
     return {Finding::Mark::broken, "access",
-            error_of(reply, connection.server(), NotFound::not_found).what() + advice};
+            error_of(reply, connection.server(), NotFound::not_found).what()};
 }
 
 Finding check_movies() {
