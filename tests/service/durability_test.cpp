@@ -18,14 +18,14 @@ class Durability : public ServiceTest {
     }
     std::set<std::string> known() {
         std::set<std::string> ids;
-        for (const auto& job : client::Json::parse(http_->get("/v1/jobs").body).at("jobs"))
-            ids.insert(job.at("id").get<std::string>());
+        const auto reply = client::Json::parse(http_->get("/v1/jobs").body);
+        for (const auto& job : reply.at("jobs")) ids.insert(job.at("id").get<std::string>());
         return ids;
     }
     std::map<int, std::string> finished(const std::string& id) {
         std::map<int, std::string> pictures;
-        for (const auto& frame :
-             client::Json::parse(http_->get("/v1/jobs/" + id + "/frames").body).at("frames"))
+        const auto reply = client::Json::parse(http_->get("/v1/jobs/" + id + "/frames").body);
+        for (const auto& frame : reply.at("frames"))
             if (frame.at("final") == true)
                 pictures[frame.at("frame")] = http_->get(frame.at("exr").get<std::string>()).body;
         return pictures;

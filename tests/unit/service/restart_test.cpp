@@ -239,6 +239,21 @@ TEST_F(Restart, StatesFollowAModelThroughAnyRequests) {
     solver_.open();
 }
 
+TEST_F(Restart, ConvergenceIsToldAsJsonAndCsv) {
+    const std::string id = submit(R"({"frames":"0-2"})");
+    wait_for_end(id);
+    restart();
+    const Json rows = json("GET", "/v1/jobs/" + id + "/convergence").at("frames");
+    ASSERT_EQ(rows.size(), 3U);
+    EXPECT_EQ(rows[2].at("frame"), 2);
+    EXPECT_EQ(rows[2].at("error_bound"), 0.125);
+    EXPECT_GE(rows[2].at("seconds"), rows[0].at("seconds"));
+    const std::string csv = ask("GET", "/v1/jobs/" + id + "/convergence", "", {{"type", "csv"}}).body;
+    EXPECT_THAT(csv, testing::StartsWith("frame,seconds,residual,error_bound,picture_error\n0,"));
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4);
+    EXPECT_EQ(ask("GET", "/v1/jobs/" + id + "/convergence", "", {{"type", "xml"}}).status, 422);
+}
+
 TEST_F(Restart, ReadinessAndMetricsAreTold) {
     const std::string id = submit(R"({"frames":"0-2"})");
     wait_for_end(id);
