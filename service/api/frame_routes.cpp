@@ -37,6 +37,36 @@ Reply get_frames(const RouteContext& context, const std::string& id) {
     return json_reply({{"frames", std::move(frames)}});
 }
 
+/// How near each finished frame came and when: `seconds` counts the time that the frames took so far.
+Reply get_convergence(const RouteContext& context, const Request& request, const std::string& id) {
+    job_at(context.jobs, id);
+    const std::string type = request.parameter("type");
+    if (!type.empty() && type != "json" && type != "csv")
+        throw Error(ErrorKind::invalid_input, "request?type", "expected json or csv");
+    const auto shown = [](const std::optional<double>& value) {
+        return value ? Json(*value) : Json(nullptr);
+    };
+    Json rows = Json::array();
+    std::string csv = "frame,seconds,residual,error_bound,picture_error\n";
+    double seconds = 0;
+    for (const FrameInfo& info : context.frames.newest(id)) {
+        if (!info.final) continue;
+        seconds += info.seconds;
+        const Json row = {{"frame", info.frame},
+                          {"seconds", seconds},
+                          {"residual", info.residual},
+                          {"error_bound", shown(info.error_bound)},
+                          {"picture_error", shown(info.picture_error)}};
+        std::string line;
+        for (const auto& [name, value] : row.items())
+            line += (line.empty() ? "" : ",") + (value.is_null() ? std::string() : value.dump());
+        csv += line + "\n";
+        rows.push_back(row);
+    }
+    if (type == "csv") return {200, "text/csv; charset=utf-8", std::move(csv), {}, nullptr};
+    return json_reply({{"frames", std::move(rows)}});
+}
+
 /// The revision asked for, or the newest; a problem where there is none yet or never will be.
 int choose_revision(const RouteContext& context, const Job& job, int frame, const std::string& asked) {
     const auto newest = context.frames.newest(job.id, frame);
@@ -86,6 +116,9 @@ Reply get_image(const RouteContext& context, const Request& request, const PathV
 void add_frame_routes(Router& router, const RouteContext& context) {
     router.add("GET", "/v1/jobs/{}/frames", [context](const Request&, const PathValues& values) {
         return get_frames(context, values[0]);
+    });
+    router.add("GET", "/v1/jobs/{}/convergence", [context](const Request& request, const PathValues& values) {
+        return get_convergence(context, request, values[0]);
     });
     router.add("GET", "/v1/jobs/{}/frames/{}/image",
                [context](const Request& request, const PathValues& values) {

@@ -39,12 +39,16 @@ SceneUpload read_upload(const Request& request) {
 }
 
 Reply post_scene(const RouteContext& context, const Request& request) {
-    const auto added = context.scenes.add(request.body, read_upload(request));
+    const SceneUpload upload = read_upload(request);
+    context.usage.take_bytes(request.client, request.body.size());
+    const auto added =
+        context.scenes.add(request.body, upload, static_cast<std::uint64_t>(request.client.quota.triangles));
     return json_reply(to_json(added.scene), added.outcome == SceneStore::Added::Outcome::created ? 201 : 200);
 }
 
 Reply post_paths(const RouteContext& context, const Request& request) {
     json_body(request, context.limits.document_bytes);
+    context.usage.take_bytes(request.client, request.body.size());
     return json_reply({{"id", context.scenes.add_paths(request.body)}}, 201);
 }
 

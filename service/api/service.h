@@ -3,8 +3,11 @@
 #include <cstddef>
 #include <filesystem>
 
+#include "service/api/usage.h"
 #include "service/base/limits.h"
 #include "service/http/router.h"
+#include "service/store/database.h"
+#include "service/store/frame_journal.h"
 #include "service/store/frame_store.h"
 #include "service/store/job_store.h"
 #include "service/store/scene_store.h"
@@ -19,6 +22,9 @@ struct ServiceConfig {
     int threads = 0;                    ///< for the solver; 0: one a core
     std::size_t max_resident = 4;       ///< jobs whose solver state is in memory at a time
     Limits limits;                      ///< what a client may ask for
+    /// What a stop does to jobs that have not ended: they end too, or go on at the next start.
+    enum class AtStop { cancel, keep };
+    AtStop at_stop = AtStop::cancel;
 };
 
 /// What tests may put in place of the real thing; empty members mean the real thing.
@@ -39,13 +45,18 @@ class Service {
     Service& operator=(const Service&) = delete;
 
     [[nodiscard]] const Router& router() const { return router_; }
-    /// Cancels every job that has not ended; their streams end.
+    /// Stops computing; every stream ends. What becomes of the jobs is as configured.
     void stop();
 
   private:
+    ServiceConfig::AtStop at_stop_;
+    Database database_;
+    JobTable job_table_;
+    JobStore jobs_;
+    FrameJournal journal_;
     SceneStore scenes_;
     FrameStore frames_;
-    JobStore jobs_;
+    Usage usage_;
     Encoder encoder_;
     Worker worker_;
     Router router_;

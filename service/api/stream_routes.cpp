@@ -52,16 +52,18 @@ Reply get_events(const RouteContext& context, const Request& request, const std:
     Reply reply;
     reply.content_type = "text/event-stream";
     reply.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
-    reply.stream = std::make_shared<EventStream>(log, after, std::move(opening));
+    reply.stream =
+        context.usage.counted(request.client, std::make_shared<EventStream>(log, after, std::move(opening)));
     return reply;
 }
 
-Reply get_live(const RouteContext& context, const std::string& id) {
+Reply get_live(const RouteContext& context, const Request& request, const std::string& id) {
     job_at(context.jobs, id);
     Reply reply;
     reply.content_type = live_content_type;
     reply.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
-    reply.stream = std::make_shared<LiveStream>(id, context.jobs.events(id), context.frames);
+    reply.stream = context.usage.counted(
+        request.client, std::make_shared<LiveStream>(id, context.jobs.events(id), context.frames));
     return reply;
 }
 
@@ -71,8 +73,9 @@ void add_stream_routes(Router& router, const RouteContext& context) {
     router.add("GET", "/v1/jobs/{}/events", [context](const Request& request, const PathValues& values) {
         return get_events(context, request, values[0]);
     });
-    router.add("GET", "/v1/jobs/{}/live",
-               [context](const Request&, const PathValues& values) { return get_live(context, values[0]); });
+    router.add("GET", "/v1/jobs/{}/live", [context](const Request& request, const PathValues& values) {
+        return get_live(context, request, values[0]);
+    });
 }
 
 }  // namespace afterglow

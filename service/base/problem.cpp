@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "service/base/console.h"
+#include "service/base/storage_error.h"
 
 namespace afterglow {
 
@@ -115,6 +116,12 @@ Problem problem_of(const std::exception_ptr& caught) {
         std::rethrow_exception(caught);
     } catch (const ProblemError& e) {
         return e.problem();
+    } catch (const StorageError& e) {
+        Problem problem = problem_of(static_cast<const Error&>(e));
+        problem.code = e.code();
+        if (e.code() == "disk_full") problem.status = 507, problem.detail = "the service's disk is full";
+        if (e.code() == "disk_read_only") problem.detail = "the service cannot write to its disk";
+        return problem;
     } catch (const Error& e) {
         return problem_of(e);
     } catch (const std::bad_alloc&) {

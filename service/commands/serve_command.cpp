@@ -75,7 +75,9 @@ int serve(const ServeConfig& config, const std::stop_token& stop) {
     if (config.data_folder.empty()) temporary.emplace();
     const std::filesystem::path data = temporary ? temporary->path() : config.data_folder;
     const DataLock lock(data);
-    Service service({data, config.threads, config.max_resident, config.limits});
+    // Without a folder of its own there is nothing to come back to.
+    const auto at_stop = temporary ? ServiceConfig::AtStop::cancel : ServiceConfig::AtStop::keep;
+    Service service({data, config.threads, config.max_resident, config.limits, at_stop});
     HttpServerConfig http{config.address, config.port, config.max_connections, config.limits.upload_bytes,
                           config.access_log};
     http.max_streams = std::max<std::size_t>(config.max_connections * 3 / 4, 1);

@@ -38,7 +38,10 @@ Reply json_reply(const Json& json, int status) {
 }
 
 Reply problem_reply(const Problem& problem) {
-    return {problem.status, "application/problem+json", dump(to_json(problem)) + "\n", {}, nullptr};
+    Reply reply{problem.status, "application/problem+json", dump(to_json(problem)) + "\n", {}, nullptr};
+    // Jobs and streams end after a while.
+    if (problem.status == 429) reply.headers.emplace_back("Retry-After", "10");
+    return reply;
 }
 
 }  // namespace afterglow

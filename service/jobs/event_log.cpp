@@ -24,7 +24,7 @@ std::string_view name_of(EventKind kind) {
     return "";
 }
 
-EventLog::EventLog(EventLogConfig config) : config_(config) {}
+EventLog::EventLog(EventLogConfig config, std::uint64_t first) : config_(config), last_id_(first) {}
 
 void EventLog::append(EventKind kind, std::string data, int frame) {
     {
@@ -45,6 +45,11 @@ void EventLog::close() {
         closed_ = true;
     }
     changed_.notify_all();
+}
+
+void EventLog::reopen() {
+    const std::lock_guard lock(mutex_);
+    closed_ = false;
 }
 
 /// Notes what the event `id` makes superfluous.

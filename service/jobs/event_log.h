@@ -38,12 +38,15 @@ struct EventLogConfig {
 /// readers that had not seen it are told so. Thread-safety: all members.
 class EventLog {
   public:
-    explicit EventLog(EventLogConfig config = {});
+    /// `first`: ids begin after it.
+    explicit EventLog(EventLogConfig config = {}, std::uint64_t first = 0);
 
     /// Adds an event; EventKind::end closes the log. After that nothing is added.
     void append(EventKind kind, std::string data, int frame = -1);
     /// Lets every reader finish, whether or not the job has ended.
     void close();
+    /// Goes on after an end, for a job that is tried again.
+    void reopen();
 
     enum class Status {
         open,     ///< more may come

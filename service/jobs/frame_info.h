@@ -12,6 +12,7 @@ struct FrameInfo {
     double residual = 0;                       ///< as in FrameStatistics
     std::optional<double> error_bound;         ///< the certificate; known for final pictures only
     std::optional<double> picture_error = {};  ///< of final pictures, where it was asked for
+    double seconds = 0;                        ///< wall time that the frame took, of final pictures
 };
 
 }  // namespace afterglow

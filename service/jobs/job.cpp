@@ -8,6 +8,8 @@ std::string_view name_of(JobState state) {
             return "queued";
         case JobState::running:
             return "running";
+        case JobState::paused:
+            return "paused";
         case JobState::succeeded:
             return "succeeded";
         case JobState::failed:
@@ -19,12 +21,15 @@ std::string_view name_of(JobState state) {
 }
 
 bool has_ended(JobState state) {
-    return state != JobState::queued && state != JobState::running;
+    return state == JobState::succeeded || state == JobState::failed || state == JobState::cancelled;
 }
 
 bool may_follow(JobState from, JobState to) {
-    if (has_ended(from) || to == JobState::queued || from == to) return false;
-    // Nothing succeeds that never ran.
+    if (from == to || from == JobState::succeeded) return false;
+    if (has_ended(from)) return to == JobState::queued;
+    if (to == JobState::queued) return from == JobState::paused;
+    if (to == JobState::running) return from == JobState::queued;
+    // Nothing succeeds that is not running.
     return from == JobState::running || to != JobState::succeeded;
 }
 

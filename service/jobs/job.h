@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -15,12 +16,15 @@
 namespace afterglow {
 
 /// Where a job stands.
-enum class JobState { queued, running, succeeded, failed, cancelled };
+enum class JobState { queued, running, paused, succeeded, failed, cancelled };
+inline constexpr std::array all_job_states = {JobState::queued,    JobState::running, JobState::paused,
+                                              JobState::succeeded, JobState::failed,  JobState::cancelled};
 
 std::string_view name_of(JobState state);
 /// True for the last three states.
 bool has_ended(JobState state);
-/// The legal transitions: queued → running, failed, cancelled; running → succeeded, failed, cancelled.
+/// The legal transitions: queued → running, paused, failed, cancelled; running → paused, succeeded, failed,
+/// cancelled; paused → queued, failed, cancelled; failed, cancelled → queued (tried again).
 bool may_follow(JobState from, JobState to);
 
 /// What a client asks for.
@@ -48,6 +52,9 @@ struct Job {
     std::optional<Problem> error;  ///< why it failed
     Warnings warnings;
     SequenceStatistics statistics;
+    std::string owner;             ///< name of the client that submitted it
+    std::string idempotency_key;   ///< as the client gave it; empty: none
+    std::string idempotency_hash;  ///< of the request that came with it
 
     [[nodiscard]] int frame_count() const { return frames.last - frames.first + 1; }
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -9,6 +10,7 @@
 
 #include "service/jobs/frame_info.h"
 #include "service/jobs/job_json.h"
+#include "service/store/frame_journal.h"
 
 namespace afterglow {
 
@@ -23,11 +25,19 @@ struct EncodedPicture {
 /// members; one writer a job.
 class FrameStore {
   public:
-    /// Makes the folder. Errors: io.
-    explicit FrameStore(std::filesystem::path folder);
+    /// Makes the folder. With a journal, final pictures become durable and those it knows are there; files
+    /// that it does not know are removed. Errors: io.
+    explicit FrameStore(std::filesystem::path folder, FrameJournal* journal = nullptr);
 
     /// Errors: io; the frame's newest revision is then unchanged.
     void put(const std::string& job, const FrameInfo& info, const EncodedPicture& picture);
+
+    /// Waits until every final picture put before is durable, or has failed to become so.
+    void flush();
+    /// What removing a job would free.
+    [[nodiscard]] std::uint64_t bytes_of(const std::string& job) const;
+    /// Removes the pictures of a job.
+    void remove(const std::string& job);
 
     /// The newest revision of every frame begun, in order of frames.
     [[nodiscard]] std::vector<FrameInfo> newest(const std::string& job) const;
@@ -42,7 +52,10 @@ class FrameStore {
                                                 PictureType type) const;
     void remove_preliminary(const std::string& job, const FrameInfo& final_info) const;
 
+    void load();
+
     std::filesystem::path folder_;
+    FrameJournal* journal_;
     mutable std::mutex mutex_;
     std::map<std::string, std::map<int, FrameInfo>> newest_;
 };

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "service/base/identity.h"
+#include "service/http/http_message.h"
+#include "service/store/durable_file.h"
 #include "solver/base/file.h"
 
 namespace afterglow {
@@ -32,6 +34,34 @@ StoredScene describe(const std::string& id, const SceneUpload& upload, std::uint
     return scene;
 }
 
+/// What is kept in the database of a scene; the bytes are a file.
+Json to_record(const StoredScene& scene) {
+    Json record = to_json(scene);
+    record["format"] = static_cast<int>(scene.upload.format);
+    record["obj_unit_m"] = scene.upload.load.obj_unit_m;
+    record["obj_up"] = static_cast<int>(scene.upload.load.obj_up);
+    return record;
+}
+
+StoredScene scene_of_record(const Json& record) {
+    StoredScene scene;
+    scene.id = record.at("id").get<std::string>();
+    scene.upload.name = record.at("name").get<std::string>();
+    scene.upload.format = static_cast<SceneFormat>(record.at("format").get<int>());
+    scene.upload.load.obj_unit_m = record.at("obj_unit_m").get<double>();
+    scene.upload.load.obj_up = static_cast<UpAxis>(record.at("obj_up").get<int>());
+    scene.bytes = record.at("bytes").get<std::uint64_t>();
+    scene.triangles = record.at("triangles").get<std::uint64_t>();
+    scene.actors = record.at("actors").get<std::uint64_t>();
+    scene.cameras = record.at("cameras").get<std::vector<std::string>>();
+    scene.frames_per_second = record.at("frames_per_second").get<double>();
+    scene.last_frame = record.at("last_frame").get<int>();
+    for (const Json& warning : record.at("warnings"))
+        scene.warnings.push_back(
+            {warning.at("place").get<std::string>(), warning.at("message").get<std::string>()});
+    return scene;
+}
+
 }  // namespace
 
 Json to_json(const StoredScene& scene) {
@@ -49,8 +79,8 @@ Json to_json(const StoredScene& scene) {
             {"warnings", std::move(warnings)}};
 }
 
-SceneStore::SceneStore(std::filesystem::path folder, Reader reader)
-    : folder_(std::move(folder)), reader_(std::move(reader)) {
+SceneStore::SceneStore(std::filesystem::path folder, Reader reader, Database* database)
+    : folder_(std::move(folder)), reader_(std::move(reader)), database_(database) {
     if (!reader_)
         reader_ = [](std::string_view bytes, const SceneUpload& upload) {
             return read_scene(bytes, upload.format, upload.name, upload.load);
@@ -58,22 +88,50 @@ SceneStore::SceneStore(std::filesystem::path folder, Reader reader)
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (error) throw Error(ErrorKind::io, folder_.string(), error.message());
+    if (database_ != nullptr) load();
+}
+
+/// Takes what the database knows; files that it does not know were being written when the process ended.
+void SceneStore::load() {
+    for (const Row& row : database_->ask("SELECT id, body FROM scenes"))
+        scenes_.emplace(as_text(row[0]), scene_of_record(parse_json(as_text(row[1]), "scene record")));
+    for (const Row& row : database_->ask("SELECT id, bytes FROM paths"))
+        paths_.emplace(as_text(row[0]), static_cast<std::uint64_t>(as_integer(row[1])));
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_, error)) {
+        const std::string name = entry.path().filename().string();
+        if (!scenes_.contains(name) && !paths_.contains(name)) std::filesystem::remove(entry.path(), error);
+    }
+}
+
+/// The file, then its row. Callers hold the lock, since two uploads of one content have one name.
+void SceneStore::keep(const std::string& id, std::string_view bytes, const std::string& sql,
+                      const Cell& about) {
+    put_file(file_of(id), bytes);
+    if (database_ == nullptr) return;
+    make_durable({file_of(id)});
+    database_->change(sql, {id, about});
 }
 
 std::filesystem::path SceneStore::file_of(const std::string& id) const {
     return folder_ / id;
 }
 
-SceneStore::Added SceneStore::add(std::string_view bytes, const SceneUpload& upload) {
+SceneStore::Added SceneStore::add(std::string_view bytes, const SceneUpload& upload,
+                                  std::uint64_t max_triangles) {
     const std::string id = id_of(bytes, upload);
     if (auto known = find(id)) return {*std::move(known), Added::Outcome::known};
     const World world = assemble(reader_(bytes, upload), upload.load.collinear_tolerance_m,
                                  upload.load.collinear_tolerance_rad);
     StoredScene scene = describe(id, upload, bytes.size(), world);
+    if (scene.triangles > max_triangles)
+        throw Error(ErrorKind::too_large, upload.name,
+                    "it has " + std::to_string(scene.triangles) + " triangles, more than the limit of " +
+                        std::to_string(max_triangles));
 
-    // Under the lock, since two uploads of one content would write to one temporary name.
     const std::lock_guard lock(mutex_);
-    write_file(file_of(id), bytes);
+    if (!scenes_.contains(id))
+        keep(id, bytes, "INSERT OR IGNORE INTO scenes VALUES (?1, ?2)", dump(to_record(scene)));
     const auto outcome = scenes_.emplace(id, scene).second ? Added::Outcome::created : Added::Outcome::known;
     return {std::move(scene), outcome};
 }
@@ -84,7 +142,8 @@ std::string SceneStore::add_paths(std::string_view json_text) {
     std::string id = content_id("paths|" + sha256(json_text));
     const std::lock_guard lock(mutex_);
     if (!paths_.contains(id)) {
-        write_file(file_of(id), json_text);
+        keep(id, json_text, "INSERT OR IGNORE INTO paths VALUES (?1, ?2)",
+             static_cast<std::int64_t>(json_text.size()));
         paths_.emplace(id, json_text.size());
     }
     return id;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "service/jobs/job.h"
+#include "service/store/database.h"
 #include "solver/base/json.h"
 #include "solver/scene/load.h"
 #include "solver/scene/world.h"
@@ -47,17 +49,19 @@ class SceneStore {
     /// As `read_scene`; tests may use another.
     using Reader = std::function<Scene(std::string_view bytes, const SceneUpload& upload)>;
 
-    /// Makes the folder. Errors: io.
-    explicit SceneStore(std::filesystem::path folder, Reader reader = {});
+    /// Makes the folder. With a database, what it knows is there and what is added becomes durable. Errors:
+    /// io.
+    explicit SceneStore(std::filesystem::path folder, Reader reader = {}, Database* database = nullptr);
 
     struct Added {
         enum class Outcome { created, known };
         StoredScene scene;
         Outcome outcome = Outcome::created;
     };
-    /// Reads the scene to the end before keeping it. Errors: those of read_scene and assemble; nothing is
-    /// kept then.
-    Added add(std::string_view bytes, const SceneUpload& upload);
+    /// Reads the scene to the end before keeping it. Errors: those of read_scene and assemble; too_large past
+    /// `max_triangles`; nothing is kept then.
+    Added add(std::string_view bytes, const SceneUpload& upload,
+              std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max());
 
     /// Keeps a paths document and returns its id. Errors: invalid_input for text that is no JSON object.
     std::string add_paths(std::string_view json_text);
@@ -72,9 +76,12 @@ class SceneStore {
 
   private:
     [[nodiscard]] std::filesystem::path file_of(const std::string& id) const;
+    void load();
+    void keep(const std::string& id, std::string_view bytes, const std::string& sql, const Cell& about);
 
     std::filesystem::path folder_;
     Reader reader_;
+    Database* database_;
     mutable std::mutex mutex_;
     std::map<std::string, StoredScene> scenes_;
     std::map<std::string, std::uint64_t> paths_;  ///< id → bytes

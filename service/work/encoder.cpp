@@ -69,18 +69,20 @@ void Encoder::loop() {
         items_.pop_front();
         lock.unlock();
         changed_.notify_all();
-        if (item.action)
+        if (item.action) {
+            frames_.flush();
             item.action();
-        else
+        } else {
             store(item.task);
+        }
         lock.lock();
     }
 }
 
 void Encoder::store(const PictureTask& task) {
     const Revision& revision = task.revision;
-    const FrameInfo info{revision.frame,    revision.revision, revision.final,
-                         revision.residual, task.error_bound,  revision.picture_error};
+    const FrameInfo info{revision.frame,   revision.revision,      revision.final, revision.residual,
+                         task.error_bound, revision.picture_error, task.seconds};
     try {
         const EncodedPicture picture{
             encode_png(revision.radiance.width, revision.radiance.height, revision.srgb),

@@ -25,6 +25,7 @@ struct PictureTask {
     Revision revision;
     std::optional<double> error_bound;  ///< of final pictures
     Keep keep = Keep::until_superseded;
+    double seconds = 0;  ///< that the frame took, of final pictures
 };
 
 /// Who is told about what became of a picture; called from the encoder's thread.
@@ -50,7 +51,8 @@ class Encoder {
 
     /// Waits only while too many pictures that must be kept are waiting.
     void submit(PictureTask task);
-    /// Calls `action` from the encoder's thread once everything submitted before has been stored.
+    /// Calls `action` from the encoder's thread once everything submitted before has been stored and is
+    /// durable.
     void after_pictures(std::function<void()> action);
     /// Forgets the waiting pictures of a job.
     void forget(const std::string& job);

@@ -1,5 +1,7 @@
 #include "service/work/worker.h"
 
+#include <chrono>
+#include <future>
 #include <utility>
 
 namespace afterglow {
@@ -8,6 +10,20 @@ namespace {
 /// Early revisions of a job's first frame are never skipped: whoever waits for a job sees at once that it
 /// lives.
 constexpr int early_revisions = 3;
+
+bool is_active(JobState state) {
+    return state == JobState::queued || state == JobState::running;
+}
+
+bool is_cancellation(const std::exception_ptr& caught) {
+    try {
+        std::rethrow_exception(caught);
+    } catch (const Error& e) {
+        return e.kind() == ErrorKind::cancelled;
+    } catch (...) {
+        return false;
+    }
+}
 
 PictureTask::Keep keep_of(const Job& job, const Revision& revision) {
     const bool early = revision.frame == job.frames.first && revision.revision <= early_revisions;
@@ -24,6 +40,11 @@ Worker::Worker(JobStore& jobs, Encoder& encoder, RunFactory make_run, WorkerConf
       thread_([this] { loop(); }) {}
 
 Worker::~Worker() {
+    halt();
+    thread_.join();
+}
+
+void Worker::halt() {
     std::string in_hand;
     {
         const std::lock_guard lock(mutex_);
@@ -31,16 +52,23 @@ Worker::~Worker() {
         in_hand = in_hand_;
     }
     changed_.notify_all();
-    if (!in_hand.empty()) jobs_.end(in_hand, JobState::cancelled);
-    thread_.join();
+    if (!in_hand.empty()) jobs_.interrupt(in_hand);
 }
 
 void Worker::submit(const std::string& job) {
     {
         const std::lock_guard lock(mutex_);
+        schedule_.remove(job);
         schedule_.add(job);
+        submitted_.insert(job);
     }
     changed_.notify_all();
+}
+
+bool Worker::pause(const std::string& job) {
+    const bool paused = jobs_.pause(job);
+    changed_.notify_all();
+    return paused;
 }
 
 bool Worker::cancel(const std::string& job) {
@@ -66,6 +94,7 @@ std::optional<std::string> Worker::wait_for_turn() {
     changed_.wait(lock, [&] { return stopping_ || (next = schedule_.next()).has_value(); });
     if (stopping_) return std::nullopt;
     in_hand_ = *next;
+    if (submitted_.erase(*next) > 0) running_.erase(*next);
     return next;
 }
 
@@ -73,26 +102,41 @@ void Worker::take_turn(const std::string& id) {
     const auto job = jobs_.find(id);
     bool goes_on = false;
     try {
-        if (job && !has_ended(job->state)) {
+        if (job && is_active(job->state)) {
             advance(*job);
             goes_on = running_.contains(id);
         }
-    } catch (const Error& e) {
-        const bool cancelled = e.kind() == ErrorKind::cancelled;
-        jobs_.end(id, cancelled ? JobState::cancelled : JobState::failed,
-                  cancelled ? std::nullopt : std::optional(problem_of(e)));
     } catch (...) {
-        jobs_.end(id, JobState::failed, problem_of(std::current_exception()));
+        // Whoever stopped the work has said what becomes of the job.
+        if (!is_cancellation(std::current_exception()))
+            jobs_.end(id, JobState::failed, problem_of(std::current_exception()));
     }
     if (goes_on) return;
     running_.erase(id);
+    leave(id);
+}
+
+/// The job has no more turns, unless it was submitted again while its computation came to a stop.
+void Worker::leave(const std::string& id) {
     const std::lock_guard lock(mutex_);
-    schedule_.remove(id);
+    if (!submitted_.contains(id)) schedule_.remove(id);
+}
+
+/// Frames are finished in order, so their number says where to go on after a pause or a restart, once those
+/// that wait to be stored have been.
+int Worker::first_frame_of(const Job& job) {
+    if (!job.started) return job.frames.first;
+    std::promise<void> stored;
+    encoder_.after_pictures([&] { stored.set_value(); });
+    stored.get_future().wait();
+    const auto now = jobs_.find(job.id);
+    return job.frames.first + (now ? now->frames_done : 0);
 }
 
 /// Computes the job's next frame; a job that is through is no longer in `running_`.
 void Worker::advance(const Job& job) {
-    const auto it = running_.try_emplace(job.id, Running{nullptr, job.frames.first}).first;
+    auto it = running_.find(job.id);
+    if (it == running_.end()) it = running_.emplace(job.id, Running{nullptr, first_frame_of(job)}).first;
     Running& running = it->second;
     const int frame = running.next_frame;
     const int frames_before = frame - job.frames.first;
@@ -100,7 +144,9 @@ void Worker::advance(const Job& job) {
         jobs_.note_progress(job.id, frame, frames_before, progress);
     });
     // Preparing counts as the first twentieth of the first frame.
-    if (!running.run) {
+    if (frame > job.frames.last) {
+        jobs_.start(job.id);
+    } else if (!running.run) {
         if (!jobs_.start(job.id)) throw Error(ErrorKind::cancelled, "", "stopped on request");
         running.run = make_run_(job, context.part(0, 0.05));
         compute_frame(job, running, context.part(0.05, 1));
@@ -122,11 +168,14 @@ void Worker::compute_frame(const Job& job, Running& running, const Context& cont
         else
             encoder_.submit(std::move(task));
     };
+    const auto began = std::chrono::steady_clock::now();
     const FrameStatistics statistics = running.run->step(running.next_frame, sink, context);
     jobs_.note_statistics(job.id, running.run->statistics());
     jobs_.note_warnings(job.id, running.run->warnings());
     if (final_picture) {
         final_picture->error_bound = statistics.error_bound;
+        final_picture->seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
         encoder_.submit(*std::move(final_picture));
     }
     ++running.next_frame;
@@ -136,14 +185,11 @@ void Worker::compute_frame(const Job& job, Running& running, const Context& cont
 void Worker::drop_ended() {
     for (auto it = running_.begin(); it != running_.end();) {
         const auto job = jobs_.find(it->first);
-        if (job && !has_ended(job->state)) {
+        if (job && is_active(job->state)) {
             ++it;
             continue;
         }
-        {
-            const std::lock_guard lock(mutex_);
-            schedule_.remove(it->first);
-        }
+        leave(it->first);
         it = running_.erase(it);
     }
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 
@@ -31,8 +32,13 @@ class Worker {
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
 
-    /// Takes a queued job of the store.
+    /// Takes a queued job of the store; also one that is tried again. It goes on after its last finished
+    /// frame.
     void submit(const std::string& job);
+    /// Pauses the job: its computation stops at its next check and its state is freed. False: not legal now.
+    bool pause(const std::string& job);
+    /// Stops computing at the next check and for good; jobs stay as they are.
+    void halt();
     /// Ends the job now; the computation stops at its next check and its state is freed. False: it had ended.
     bool cancel(const std::string& job);
 
@@ -44,6 +50,8 @@ class Worker {
     void loop();
     std::optional<std::string> wait_for_turn();
     void take_turn(const std::string& id);
+    [[nodiscard]] int first_frame_of(const Job& job);
+    void leave(const std::string& id);
     void advance(const Job& job);
     void compute_frame(const Job& job, Running& running, const Context& context);
     void drop_ended();
@@ -56,7 +64,8 @@ class Worker {
     std::mutex mutex_;
     std::condition_variable changed_;
     Schedule schedule_;
-    std::string in_hand_;  ///< the job whose turn it is
+    std::set<std::string> submitted_;  ///< since their last turn; what runs of them is of an earlier attempt
+    std::string in_hand_;              ///< the job whose turn it is
     bool stopping_ = false;
     std::thread thread_;
 };

@@ -37,6 +37,10 @@ std::vector<client::Json> json_lines(const std::string& text) {
 }
 
 void ServiceTest::SetUp() {
+    start_server();
+}
+
+void ServiceTest::start_server() {
     server_ = std::make_unique<Process>(std::vector<std::string>{bin + "afterglowd", "serve", "--listen",
                                                                  "127.0.0.1:0", "--data",
                                                                  (folder_.path() / "data").string()});

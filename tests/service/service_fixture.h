@@ -37,6 +37,8 @@ struct Outcome {
 class ServiceTest : public testing::Test {
   protected:
     void SetUp() override;
+    /// Starts the server, again on the same folder where it ran before, at a new port.
+    void start_server();
 
     /// Runs `afterglow` with these arguments to its end.
     Outcome afterglow(const std::vector<std::string>& arguments);
@@ -58,8 +60,6 @@ class ServiceTest : public testing::Test {
     std::string url_;
     client::Interrupt interrupt_;
     std::unique_ptr<client::HttpConnection> http_;
-
-  private:
     std::unique_ptr<Process> server_;
 };
 

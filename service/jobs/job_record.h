@@ -1,0 +1,16 @@
+#pragma once
+
+#include "service/jobs/job.h"
+#include "solver/base/json.h"
+
+namespace afterglow {
+
+/// A job as it is kept on disk: everything that must outlast the process. What is told of work in progress
+/// (`progress`, `doing`, `remaining`) is left out, and so are the pictures.
+Json to_record(const Job& job);
+
+/// The same read back. A job that was running waits for its turn again. Errors: invalid_input for a record
+/// that this version cannot read.
+Job job_of_record(const Json& record);
+
+}  // namespace afterglow

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "service/jobs/job.h"
+#include "service/store/database.h"
+
+namespace afterglow {
+
+/// The jobs of a database. What a call has returned from is durable. Errors: StorageError. Thread-safety: all
+/// members.
+class JobTable {
+  public:
+    explicit JobTable(Database& database) : database_(database) {}
+
+    /// In the order they were added.
+    std::vector<Job> load();
+    void add(const Job& job);
+    void update(const Job& job);
+    /// Its frames too.
+    void remove(const std::string& id);
+
+  private:
+    Database& database_;
+};
+
+}  // namespace afterglow

@@ -1,0 +1,82 @@
+#include <csignal>
+#include <random>
+#include <set>
+#include <thread>
+
+#include "tests/service/service_fixture.h"
+
+namespace afterglow::test {
+namespace {
+
+/// Kills the server at random moments while jobs are submitted and run, and looks at what it still knows.
+class Durability : public ServiceTest {
+  protected:
+    void kill_and_restart() {
+        server_->send_signal(SIGKILL);
+        server_->wait();
+        start_server();
+    }
+    std::set<std::string> known() {
+        std::set<std::string> ids;
+        const auto reply = client::Json::parse(http_->get("/v1/jobs").body);
+        for (const auto& job : reply.at("jobs")) ids.insert(job.at("id").get<std::string>());
+        return ids;
+    }
+    std::map<int, std::string> finished(const std::string& id) {
+        std::map<int, std::string> pictures;
+        const auto reply = client::Json::parse(http_->get("/v1/jobs/" + id + "/frames").body);
+        for (const auto& frame : reply.at("frames"))
+            if (frame.at("final") == true)
+                pictures[frame.at("frame")] = http_->get(frame.at("exr").get<std::string>()).body;
+        return pictures;
+    }
+};
+
+TEST_F(Durability, NothingAcknowledgedIsLostWhenTheServerIsKilled) {
+    std::mt19937 random(1);
+    std::set<std::string> acknowledged;
+    for (int round = 0; round < 6; ++round) {
+        acknowledged.insert(submit("cornell-slide.glb", small("0-5")));
+        std::this_thread::sleep_for(std::chrono::milliseconds(random() % 1500));
+        kill_and_restart();
+        EXPECT_EQ(known(), acknowledged);
+    }
+    for (const std::string& id : acknowledged) {
+        const Outcome watch = afterglow({"watch", id});
+        EXPECT_EQ(watch.exit, 0) << watch.err;
+        EXPECT_EQ(job(id).at("frames_done"), 6);
+    }
+}
+
+TEST_F(Durability, FinishedFramesAreNeitherTornNorComputedAgain) {
+    const std::string id = submit("cornell-slide.glb", small("0-11"));
+    std::map<int, std::string> before;
+    while (before.size() < 4) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        before = finished(id);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(250));  // then a group is durable
+    kill_and_restart();
+    const auto after = finished(id);
+    for (const auto& [frame, picture] : before) {
+        ASSERT_TRUE(after.contains(frame)) << frame;
+        EXPECT_EQ(after.at(frame), picture) << frame;
+    }
+    EXPECT_EQ(afterglow({"watch", id}).exit, 0);
+    const auto whole = finished(id);
+    EXPECT_EQ(whole.size(), 12U);
+    for (const auto& [frame, picture] : before) EXPECT_EQ(whole.at(frame), picture) << frame;
+}
+
+TEST_F(Durability, ATerminatedServerKeepsItsJobs) {
+    const std::string id = submit("living-room.glb", endless());
+    server_->send_signal(SIGTERM);
+    EXPECT_EQ(server_->wait(), 0) << server_->err();
+    start_server();
+    const std::string state = job(id).at("state");
+    EXPECT_TRUE(state == "queued" || state == "running") << state;
+    EXPECT_EQ(afterglow({"cancel", id}).exit, 0);
+}
+
+}  // namespace
+}  // namespace afterglow::test
