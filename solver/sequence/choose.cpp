@@ -1,6 +1,7 @@
 #include "solver/sequence/choose.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "solver/base/error.h"
 #include "solver/visibility/events.h"
@@ -12,21 +13,34 @@ namespace {
 // Looking ahead pays from about this many frames on (solver/visibility/README.md).
 constexpr int frames_worth_events = 8;
 
+// And up to about this many faces of all that moves.
+constexpr std::size_t faces_worth_events = 1000;
+
+bool moves(const Body& body) {
+    return std::any_of(body.path.keys.begin(), body.path.keys.end(),
+                       [&](const Key<Pose>& key) { return key.value != body.path.keys.front().value; });
+}
+
 MethodChoice choose_freely(const World& world, int frames) {
     // The first body is the furniture.
-    const auto movers = std::count_if(world.bodies.begin() + 1, world.bodies.end(), [](const Body& body) {
-        return std::any_of(body.path.keys.begin(), body.path.keys.end(),
-                           [&](const Key<Pose>& key) { return key.value != body.path.keys.front().value; });
-    });
+    const auto movers = std::count_if(world.bodies.begin() + 1, world.bodies.end(), moves);
     if (frames == 1)
         return {Visibility::retrace, Solution::progressive, "a single frame has nothing to reuse"};
     if (movers == 0)
         return {Visibility::back_buffer, Solution::residual,
                 "nothing moves, so all lines are traced once and no temporal structure is built"};
+    const auto faces = std::accumulate(
+        world.bodies.begin() + 1, world.bodies.end(), std::size_t{0},
+        [](std::size_t sum, const Body& body) { return sum + (moves(body) ? body.triangles.size() : 0); });
     const std::string actors = std::to_string(movers) + (movers == 1 ? " actor" : " actors");
     if (frames > 0 && frames < frames_worth_events)
         return {Visibility::back_buffer, Solution::residual,
                 actors + " but few frames: looking ahead for events would cost more than it saves"};
+    if (faces > faces_worth_events)
+        return {
+            Visibility::back_buffer, Solution::residual,
+            actors + " of " + std::to_string(faces) +
+                " faces: looking ahead for events takes them one by one, tracing frame by frame does not"};
     return {Visibility::events, Solution::residual,
             actors + ": what lines come to see is found ahead, and only what changes is solved"};
 }

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "solver/formfactor/closed_forms.h"
+#include "solver/formfactor/hemicube.h"
 #include "tests/support/solved_world.h"
 
 // Closed forms 5 and 6: something moves between a receiver and what it sees. The mover is an actor, so that
@@ -107,6 +108,86 @@ TEST_P(MovingOccluder, AShutterHasItsClosedFormAtEveryOffset) {
     }
     RecordProperty("largest_error_of_sight_lines", std::to_string(largest_by_sight));
     RecordProperty("largest_error_of_light_lines", std::to_string(largest_by_light));
+}
+
+constexpr double sweep_step_m = 0.004;
+constexpr int sweep_steps = 200;
+
+/// How much a factor goes up and down in all while the shutter moves from 0 to 0.8 m in steps far smaller
+/// than a pixel, as a multiple of what the exact one does; and the largest step of a single frame, likewise.
+struct Variation {
+    double all = 0, largest_step = 0;
+};
+
+template <class Factor>
+Variation variation_of(const Factor& factor_at) {
+    Variation out;
+    double exact = 0, exact_step = 0;
+    double before = factor_at(0), exact_before = shutter_factor(0);
+    for (int k = 1; k <= sweep_steps; ++k) {
+        const double offset = k * sweep_step_m, now = factor_at(offset), exact_now = shutter_factor(offset);
+        out.all += std::abs(now - before);
+        out.largest_step = std::max(out.largest_step, std::abs(now - before));
+        exact += std::abs(exact_now - exact_before);
+        exact_step = std::max(exact_step, std::abs(exact_now - exact_before));
+        before = now;
+        exact_before = exact_now;
+    }
+    return {out.all / exact, out.largest_step / exact_step};
+}
+
+Variation of_hemicube(int resolution, double angle) {
+    const Hemicube hemicube({.resolution = resolution});
+    const auto turned = [&](double x, double y, double z) {
+        return Vec3d(std::cos(angle) * x - std::sin(angle) * y, std::sin(angle) * x + std::cos(angle) * y, z);
+    };
+    const auto square = [&](double middle, double half, double z) {
+        return std::array{turned(middle - half, -half, z), turned(middle - half, half, z),
+                          turned(middle + half, half, z), turned(middle + half, -half, z)};
+    };
+    const auto source = square(0, 1, 2);
+    return variation_of([&](double offset) {
+        const auto blocker = square(offset, 0.25, 1);
+        const std::array<HemicubePolygon, 2> seen{HemicubePolygon{source, 0}, HemicubePolygon{blocker, 1}};
+        return hemicube.look({}, seen, 2).factor[0];
+    });
+}
+
+Variation of_lines(Visibility visibility, Index lines) {
+    SolvedWorldConfig config;
+    config.patch_size_m = 10;
+    config.lines = lines;
+    config.light_lines = 16;
+    config.visibility = visibility;
+    SolvedWorld solved(shutter(), config);
+    const Index receiver = solved.patches_of(surface_of(solved, 0), Side::front).front();
+    const Index source = surface_of(solved, 2);
+    return variation_of([&](double offset) {
+        solved.look(1 + offset);
+        return solved.factor_to_surface(receiver, source);
+    });
+}
+
+TEST(Shutter, FixedLinesJumpLessThanAsManyPixels) {
+    for (const int resolution : {32, 64}) {
+        // A hemicube has so many pixels.
+        const auto lines = static_cast<Index>(3 * resolution * resolution);
+        const Variation events = of_lines(Visibility::events, lines);
+        const Variation along = of_hemicube(resolution, 0), across = of_hemicube(resolution, 0.3);
+        const std::string size = std::to_string(resolution);
+        for (const auto& [name, variation] : {std::pair("lines_", events), std::pair("pixels_along_", along),
+                                              std::pair("pixels_across_", across)})
+            ::testing::Test::RecordProperty(
+                name + size, std::to_string(variation.all) + " " + std::to_string(variation.largest_step));
+        EXPECT_GE(events.all, 1 - 1e-2) << resolution;
+        // Across pixel rows single pixels turn, along them whole columns at once: ripples here, steps there.
+        EXPECT_LT(events.all, across.all) << resolution;
+        EXPECT_LT(events.largest_step, along.largest_step / 2) << resolution;
+    }
+    // What events show is what tracing shows, in every frame.
+    const Variation events = of_lines(Visibility::events, 1024), cast = of_lines(Visibility::retrace, 1024);
+    EXPECT_EQ(events.all, cast.all);
+    EXPECT_EQ(events.largest_step, cast.largest_step);
 }
 
 /// Hottel's crossed strings for a blocker of width b at mid-gap between unit strips at gap 1.

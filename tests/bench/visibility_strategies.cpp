@@ -3,6 +3,7 @@
 // [lines a patch] [threads] [frames]
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -14,6 +15,7 @@
 #include "solver/visibility/line_events.h"
 #include "solver/visibility/own_light_lines.h"
 #include "solver/visibility/own_lines.h"
+#include "solver/visibility/packet_hull.h"
 #include "solver/visibility/reach.h"
 #include "tests/bench/timing.h"
 
@@ -56,6 +58,54 @@ struct Row {
     std::vector<double> frame_ms = {};
 };
 
+/// Bytes, per line that changes at some time, of what lines see and of events.
+void print_bytes(std::size_t lines, std::size_t lines_that_change, std::size_t events) {
+    // Background patch and distance, and the patch that is seen now.
+    constexpr double per_line = 2 * sizeof(Index) + sizeof(float), per_event = sizeof(LineEvent);
+    const auto changing = static_cast<double>(lines_that_change);
+    std::printf(
+        "bytes a line %.0f, an event %.0f; a line that changes %.1f with its %.2f events, with all other "
+        "lines %.1f\n",
+        per_line, per_event, per_line + per_event * static_cast<double>(events) / changing,
+        static_cast<double>(events) / changing,
+        (per_line * static_cast<double>(lines) + per_event * static_cast<double>(events)) / changing);
+}
+
+/// Which packets of a window any actor's swept box may be met by, alone: the candidates.
+void time_candidates(const Room& room, const FrameClock& clock, int frames, double static_ms) {
+    const int last = std::min(frames, window) - 1;
+    std::vector<Box> swept(room.world.bodies.size());
+    for (Index b = 1; b < swept.size(); ++b)
+        for (int f = 0; f <= last; ++f) {
+            const Pose pose = room.world.bodies[b].path.at(clock.time_of(f));
+            for (const Vec3& position : room.world.bodies[b].positions) swept[b].add(pose.point(position));
+        }
+    Box all;
+    for (const Box& box : swept) all.add(box);
+    const float reach_m = glm::length(glm::max(glm::abs(all.low), glm::abs(all.high)));
+    std::size_t candidates = 0, packets = 0;
+    const double ms = ms_of([&] {
+        RayPacket rays;
+        for (std::size_t b = 0; b < room.sight.static_blocks(); ++b)
+            for (Index d = 0; d < room.sight.lines_per_patch(); ++d) {
+                room.sight.rays(b, d, Pose{}, rays);
+                const PatchBlock& block = room.sight.blocks()[b];
+                std::copy_n(room.background.background.distance.begin() +
+                                static_cast<std::ptrdiff_t>(room.sight.line(block, d, 0)),
+                            block.count, rays.far.begin());
+                const PacketHull hull(rays, reach_m);
+                ++packets;
+                candidates += std::any_of(swept.begin() + 1, swept.end(),
+                                          [&](const Box& box) { return hull.may_meet(box); })
+                                  ? 1U
+                                  : 0U;
+            }
+    });
+    std::printf("candidates of %d frames: %.1f %% of %zu packets, %.1f ms, %.2f of the static pass\n",
+                last + 1, 100.0 * static_cast<double>(candidates) / static_cast<double>(packets), packets, ms,
+                ms / static_ms);
+}
+
 /// Sight lines of static patches only, which is where the strategies differ.
 void compare_static_lines(Room& room, const FrameClock& clock, int frames, const Context& context) {
     const Index lines = room.sight.lines_per_patch();
@@ -65,7 +115,8 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
     });
     std::vector<Index> anew(std::size_t{room.mesh.size()} * lines), shown(anew), before;
     const ActorTrees trees = make_actor_trees(room.world);
-    std::uint64_t changes = 0, k = 0, events_applied = 0, different = 0, lines_that_change = 0;
+    std::uint64_t changes = 0, k = 0, events_applied = 0, different = 0, lines_that_change = 0,
+                  all_events = 0;
     std::vector<char> cut(room.static_lines(), 0);
     LineEvents found;
     for (int f = 0; f < frames; ++f) {
@@ -79,6 +130,7 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
             std::copy(room.background.background.patch.begin(), room.background.background.patch.end(),
                       shown.begin());
             for (const LineEvent& event : found.list) cut[event.line] = 1;
+            all_events += found.list.size();
         }
         events.frame_ms.push_back(ms_of([&] {
             for (const LineEvent& event : found.at(f % window)) shown[event.line] = event.to;
@@ -125,6 +177,12 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
                     per_frame / frame_ms, per_frame * frames / (fixed + frame_ms * frames));
     }
     std::printf("events in all: %.2f M\n", static_cast<double>(events_applied) * 1e-6);
+    std::printf(
+        "a frame touches %.3f k lines where k see another patch; cheaper than retracing from frame %.0f on\n",
+        static_cast<double>(k) / static_cast<double>(std::max<std::uint64_t>(changes, 1)),
+        std::ceil((static_ms + events.ahead_ms) / (per_frame - median(events.frame_ms))));
+    print_bytes(room.static_lines(), lines_that_change, all_events);
+    time_candidates(room, clock, frames, static_ms);
 }
 
 /// What is looked ahead along light lines, a window at a time.

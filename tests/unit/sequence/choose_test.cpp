@@ -40,6 +40,18 @@ TEST(ChooseMethod, AnActorThatNeverLeavesItsPlaceDoesNotMove) {
     EXPECT_EQ(chosen(world, expecting(96)), "back-buffer+residual");
 }
 
+TEST(ChooseMethod, FinelyMeshedActorsAreNotLookedAheadFor) {
+    std::mt19937 random(1);
+    World world = testing::small_room();
+    EXPECT_EQ(chosen(world, expecting(96)), "events");
+    Body& ball = world.bodies.emplace_back();
+    testing::add_ball(ball, Vec3(0), 0.2F, 3, 0);
+    // One that rests does not count.
+    EXPECT_EQ(chosen(world, expecting(96)), "events");
+    ball.path = testing::random_path(random, {Vec3(1), Vec3(2)}, 2, testing::Turning::no);
+    EXPECT_EQ(chosen(world, expecting(96)), "back-buffer+residual");
+}
+
 TEST(ChooseMethod, SaysWhyUnlessAskedByName) {
     const World world = testing::random_world(2, 3, Movements::straight);
     EXPECT_THAT(choose_method(world, expecting(96)).reason, ::testing::HasSubstr("actors: "));
