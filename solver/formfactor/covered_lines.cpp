@@ -1,7 +1,6 @@
 #include "solver/formfactor/covered_lines.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace afterglow {
@@ -52,54 +51,61 @@ CoverUpdate::CoverUpdate(LayeredMatrix& matrix, const LayerScene& scene, RowChan
     changes_.lines = 0;
 }
 
-/// Merges what changed into a block's covered lines.
+/// Merges what changed into a block's covered lines. Whether a line is covered before or after is a toss-up,
+/// so that asking costs more than doing: what may be wanted is read and written, and only counted if it is.
 void CoverUpdate::show_sight(std::size_t b, std::span<const LineChange> changes) {
     if (changes.empty()) return;
     const PatchBlock& block = scene_.sight.blocks()[b];
     const auto first_line = static_cast<Index>(scene_.sight.line(block, 0, 0));
     CoveredBlock& covered = matrix_.sight.covered[b];
-    merged_.entries.resize(covered.entries.size() + changes.size());
-    merged_.lines.resize(merged_.entries.size());
+    // A line beyond all others, so that the next one can always be looked at.
+    covered.lines.push_back({no_index, 0, 0});
+    covered.entries.emplace_back();
+    const std::size_t most = covered.entries.size() + changes.size();
+    if (merged_.entries.size() < most) {
+        merged_.entries.resize(most);
+        merged_.lines.resize(most);
+    }
     Merge merge;
-    const auto keep_before = [&](std::size_t line) {
-        for (; merge.next < covered.lines.size() && covered.lines[merge.next].line < line; ++merge.next)
-            keep(covered.lines[merge.next], covered.entries[merge.next], merge);
+    const auto keep_before = [&](Index line) {
+        for (; covered.lines[merge.next].line < line; ++merge.next) {
+            merged_.lines[merge.kept] = covered.lines[merge.next];
+            merged_.entries[merge.kept++] = covered.entries[merge.next];
+        }
     };
     for (std::size_t c = 0; c < changes.size();) {
         LineChange change = changes[c];
         for (++c; c < changes.size() && changes[c].line == change.line; ++c) change.to = changes[c].to;
         keep_before(change.line);
-        note(block.first + (change.line - first_line) % block.count, change, covered, merge);
+        note(block.first, (change.line - first_line) % block.count, change, covered, merge);
     }
-    keep_before(std::numeric_limits<std::size_t>::max());
-    merged_.entries.resize(merge.kept);
-    merged_.lines.resize(merge.kept);
-    std::swap(covered, merged_);
+    keep_before(no_index);
+    const auto kept = static_cast<std::ptrdiff_t>(merge.kept);
+    covered.entries.assign(merged_.entries.begin(), merged_.entries.begin() + kept);
+    covered.lines.assign(merged_.lines.begin(), merged_.lines.begin() + kept);
     changes_.lines += changes.size();
 }
 
-void CoverUpdate::keep(const CoveredLine& line, const CoveredEntry& entry, Merge& merge) {
-    merged_.lines[merge.kept] = line;
-    merged_.entries[merge.kept] = entry;
-    ++merge.kept;
-}
-
 /// Puts one line where it belongs in tally, layer and list.
-void CoverUpdate::note(Index row, const LineChange& change, CoveredBlock& covered, Merge& merge) {
-    const std::size_t place = merge.next;
-    const bool known = place < covered.lines.size() && covered.lines[place].line == change.line;
-    // An open line comes from its background, so that need not be looked up.
-    const Index background = known ? covered.lines[place].background : change.from;
-    const Index base =
-        known ? covered.entries[place].base : column_of(matrix_, scene_.lamps, row, background);
-    const Index before = known ? covered.entries[place].now : base;
-    if (known) ++merge.next;
+void CoverUpdate::note(Index first_row, Index lane, const LineChange& change, const CoveredBlock& covered,
+                       Merge& merge) {
+    const Index row = first_row + lane;
+    const CoveredLine& line = covered.lines[merge.next];
+    const CoveredEntry& entry = covered.entries[merge.next];
+    const bool known = line.line == change.line;
+    merge.next += known ? 1 : 0;
+    // An open line comes from its background.
+    const Index background = known ? line.background : change.from;
+    const Index base = column_of(matrix_, scene_.lamps, row, background);
+    const Index before = known ? entry.now : base;
     const Index now = column_of(matrix_, scene_.lamps, row, change.to);
     LineTally& tally = matrix_.ledger.tally[row];
     --tallied(tally, change.from, before != matrix_.nowhere());
     ++tallied(tally, change.to, now != matrix_.nowhere());
     if (before != now) changes_.sight.push_back({row, before, now, 1});
-    if (change.to != background) keep({change.line, background, change.to}, {row, base, now, 1}, merge);
+    merged_.lines[merge.kept] = {change.line, background, change.to};
+    merged_.entries[merge.kept] = {base, lane, now};
+    merge.kept += change.to != background ? 1 : 0;
 }
 
 void CoverUpdate::show_light(Index line, float contribution) {
@@ -110,20 +116,22 @@ void CoverUpdate::show_light(Index line, float contribution) {
     const Index k = (line - static_cast<Index>(scene_.light.line(block, 0, 0))) / block.count;
     const Index lamp_patch = scene_.light.lamp_patch(row / block_size, k);
     if (!(value > 0) || column_of(matrix_, scene_.lamps, row, lamp_patch) != matrix_.nowhere()) return;
-    std::vector<CoveredLine>& dark = matrix_.light.covered[row / block_size].lines;
-    std::vector<CoveredEntry>& entries = matrix_.light.covered[row / block_size].entries;
-    const auto at = std::lower_bound(dark.begin(), dark.end(), line,
+    CoveredBlock& dark = matrix_.light.covered[row / block_size];
+    const auto at = std::lower_bound(dark.lines.begin(), dark.lines.end(), line,
                                      [](const CoveredLine& a, Index b) { return a.line < b; });
-    const bool was_covered = at != dark.end() && at->line == line, is_covered = !(contribution > 0);
+    const bool was_covered = at != dark.lines.end() && at->line == line, is_covered = !(contribution > 0);
     if (was_covered == is_covered) return;
     const Index nowhere = matrix_.nowhere();
+    const auto place = at - dark.lines.begin();
     if (is_covered) {
-        entries.insert(entries.begin() + (at - dark.begin()), {row, lamp_patch, nowhere, value});
-        dark.insert(at, {line, lamp_patch, sees_inside});
+        dark.entries.insert(dark.entries.begin() + place, {lamp_patch, row % block_size, nowhere});
+        dark.value.insert(dark.value.begin() + place, value);
+        dark.lines.insert(at, {line, lamp_patch, sees_inside});
         changes_.light.push_back({row, lamp_patch, nowhere, value});
     } else {
-        entries.erase(entries.begin() + (at - dark.begin()));
-        dark.erase(at);
+        dark.entries.erase(dark.entries.begin() + place);
+        dark.value.erase(dark.value.begin() + place);
+        dark.lines.erase(at);
         changes_.light.push_back({row, nowhere, lamp_patch, value});
     }
 }

@@ -34,13 +34,13 @@ class CoverUpdate {
     struct Merge {
         std::size_t next = 0, kept = 0;
     };
-    void note(Index row, const LineChange& change, CoveredBlock& covered, Merge& merge);
-    void keep(const CoveredLine& line, const CoveredEntry& entry, Merge& merge);
+    void note(Index first_row, Index lane, const LineChange& change, const CoveredBlock& covered,
+              Merge& merge);
 
     LayeredMatrix& matrix_;
     const LayerScene& scene_;
     RowChanges& changes_;
-    CoveredBlock merged_;  // room for the block in hand as it will be
+    CoveredBlock merged_;  // room for a block's covered lines as they will be
 };
 
 /// Looks for what lines show otherwise than the layers do, block by block. Thread-safety: const.

@@ -97,8 +97,10 @@ void scale_rows(LayeredMatrix& matrix, const LayerScene& scene) {
     const auto lines = static_cast<float>(scene.sight.lines_per_patch());
     const Index layered = matrix.ledger.has_moving_lamps ? 0 : scene.mesh.static_size();
     std::vector<double> lit_by(matrix.ledger.from_lamps);
-    for (const CoveredBlock& block : matrix.light.covered)
-        for (const CoveredEntry& entry : block.entries) lit_by[entry.row] -= static_cast<double>(entry.value);
+    for (std::size_t b = 0; b < matrix.light.covered.size(); ++b)
+        for_covered(matrix.light, b, [&](std::size_t row, Index, Index, float value) {
+            lit_by[row] -= static_cast<double>(value);
+        });
     for (Index row = 0; row < layered; ++row) {
         const LineTally& tally = matrix.ledger.tally[row];
         const double lit = lit_by[row];
@@ -182,7 +184,7 @@ LayeredMatrix make_layered_matrix(const LayerScene& scene, const Context& contex
     const std::size_t patches = scene.mesh.size();
     if (patches * std::max(scene.sight.lines_per_patch(), scene.light.lines_per_patch()) >= no_index)
         throw Error(ErrorKind::too_large, "rays", "more than 2^32 lines cannot be numbered");
-    if (patches > CountColumns::most_rows)
+    if (patches >= CountColumns::most_rows)
         throw Error(ErrorKind::too_large, "patches", "the layers count 16 million at most");
     LayeredMatrix matrix;
     matrix.sky.assign(patches, 0);
@@ -261,14 +263,14 @@ std::vector<Rgb> lamp_irradiance(const LayeredMatrix& matrix, const Lamps& lamps
         const bool is_lamp = column != matrix.nowhere() && lamps.lamp_of_patch[column] != no_index;
         return is_lamp ? emission[column] : Rgb(0);
     };
-    context.for_chunks(matrix.sight.covered.size(), blocks_per_chunk,
-                       [&](std::size_t begin, std::size_t end) {
-                           for (std::size_t b = begin; b < end; ++b)
-                               for (const LayeredRows* layer : {&matrix.sight, &matrix.light})
-                                   for (const CoveredEntry& entry : layer->covered[b].entries)
-                                       irradiance[entry.row] += layer->scale[entry.row] * entry.value *
-                                                                (light_of(entry.now) - light_of(entry.base));
-                       });
+    context.for_chunks(
+        matrix.sight.covered.size(), blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t b = begin; b < end; ++b)
+                for (const LayeredRows* layer : {&matrix.sight, &matrix.light})
+                    for_covered(*layer, b, [&](std::size_t row, Index base, Index now, float value) {
+                        irradiance[row] += layer->scale[row] * value * (light_of(now) - light_of(base));
+                    });
+        });
     for (std::size_t k = 0; k < matrix.whole_rows.size(); ++k)
         for (auto e = matrix.whole.row_begin[k]; e < matrix.whole.row_begin[k + 1]; ++e)
             irradiance[matrix.whole_rows[k]] += matrix.whole.value[e] * light_of(matrix.whole.column[e]);

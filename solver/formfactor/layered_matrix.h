@@ -9,12 +9,16 @@
 namespace afterglow {
 
 /// What a line of a static patch counts for while it does not see its background. The columns of lines that
-/// count for no patch are `nowhere`.
+/// count for no patch are `nowhere`. Small, since all of them are read again and again.
 struct CoveredEntry {
-    Index row = 0;
-    Index base = 0;  ///< the column that the base counts it in
-    Index now = 0;   ///< the column that it counts in at this time
-    float value = 0;
+    std::uint32_t base_and_lane =
+        0;          ///< the column that the base counts it in, times 256, and its row's lane
+    Index now = 0;  ///< the column that it counts in at this time
+
+    CoveredEntry() = default;
+    CoveredEntry(Index base, Index lane, Index now_) : base_and_lane(base << 8 | lane), now(now_) {}
+    [[nodiscard]] Index base() const { return base_and_lane >> 8; }
+    [[nodiscard]] Index lane() const { return base_and_lane & 255; }
 };
 
 /// Which line that is.
@@ -29,6 +33,7 @@ struct CoveredLine {
 struct CoveredBlock {
     std::vector<CoveredEntry> entries;
     std::vector<CoveredLine> lines;  ///< likewise: which line each entry is
+    std::vector<float> value;        ///< likewise, of light lines; a sight line counts 1
 };
 
 /// Columns of a matrix of counted lines: an entry is its row times 256 plus a count of 1 to 255; of more
@@ -62,13 +67,19 @@ struct LayeredRows {
     FormFactorMatrix base;
     std::vector<CoveredBlock> covered;  ///< by block of static patches
     std::vector<float> scale;           ///< by row
-
-    /// What is covered of the block that a row belongs to; nothing of a moving patch's.
-    [[nodiscard]] std::span<const CoveredEntry> covered_near(std::size_t row) const {
-        const std::size_t block = row / block_size;
-        return block < covered.size() ? covered[block].entries : std::span<const CoveredEntry>{};
-    }
 };
+
+/// Calls `take(row, base column, column now, value)` for each covered line of a block, by number.
+template <class Take>
+void for_covered(const LayeredRows& layer, std::size_t block, const Take& take) {
+    const CoveredBlock& covered = layer.covered[block];
+    const std::size_t first = block * block_size;
+    const auto value = [&](std::size_t k) { return covered.value.empty() ? 1.0F : covered.value[k]; };
+    for (std::size_t k = 0; k < covered.entries.size(); ++k) {
+        const CoveredEntry& entry = covered.entries[k];
+        take(first + entry.lane(), entry.base(), entry.now, value(k));
+    }
+}
 
 /// A line of a row that counted in one column and counts in another.
 struct RowChange {

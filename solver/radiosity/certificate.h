@@ -15,7 +15,7 @@ namespace afterglow {
 struct Certificate {
     double residual = 0;     ///< ‖r‖∞, or a bound of it that includes rounding; relative
     double gain = 0;         ///< g, see Enclosure
-    double error_bound = 0;  ///< residual / (1 − g); infinity where g ≥ 1 and light is left
+    double error_bound = 0;  ///< residual / (1 − g) or less; infinity where g ≥ 1 and light is left
 };
 
 /// What residuals are relative to, W/m²: the area-weighted mean of ρH over patches that do not emit, its

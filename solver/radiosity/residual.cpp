@@ -34,6 +34,7 @@ class Pusher {
     Pusher(ResidualState& state, const ResidualProblem& problem, Surveyor& surveyor)
         : state_(state), problem_(problem), surveyor_(surveyor), work_(state.workspace) {
         work_.change.assign(state.radiosity.size(), {});
+        work_.is_pushed.assign(state.radiosity.size(), 0);
         work_.by_sight.assign(problem.matrix.rows(), {});
         work_.by_light.assign(problem.matrix.rows(), {});
     }
@@ -108,6 +109,7 @@ class Pusher {
         const auto& of_lamps = problem_.matrix.light_columns;
         for (const Index i : patches) {
             const Lanes change = take_up(i);
+            work_.is_pushed[i] = 1;
             for_column(problem_.matrix.sight_columns, i,
                        [&](Index row, float lines) { by_sight[row].v += lines * change.v; });
             if (of_lamps.column_begin[i] == of_lamps.column_begin[i + 1]) continue;
@@ -124,6 +126,7 @@ class Pusher {
             for (std::size_t b = first; b < last; ++b) settle_block(b);
         });
         std::fill(work_.change.begin(), work_.change.end(), Lanes{});
+        std::fill(work_.is_pushed.begin(), work_.is_pushed.end(), std::uint8_t{0});
         gather_whole(state_, problem_, context);
     }
 
@@ -134,26 +137,25 @@ class Pusher {
         BlockSums sight, light{};
         for (std::size_t row = begin; row < end; ++row)
             sight[row - begin] = to_double(std::exchange(work_.by_sight[row], {}));
-        cover(problem_.matrix.sight.covered[block].entries, sight);
+        cover(problem_.matrix.sight, block, sight);
         // Lamps hardly reflect: mostly nothing has come from them.
         if (surveyor_.expects_from_lamps()) {
             for (std::size_t row = begin; row < end; ++row)
                 light[row - begin] = to_double(std::exchange(work_.by_light[row], {}));
-            cover(problem_.matrix.light.covered[block].entries, light);
+            cover(problem_.matrix.light, block, light);
         }
-        for (std::size_t row = begin; row < end; ++row) {
-            if (!is_any(sight[row - begin]) && !is_any(light[row - begin])) continue;
-            state_.by_sight[row].v += sight[row - begin].v;
-            state_.by_light[row].v += light[row - begin].v;
-            if (++state_.wear[row] >= most_wear) gather_rows(state_, problem_, row, row + 1);
-        }
+        for (std::size_t row = begin; row < end; ++row)
+            add_to_row(state_, problem_, row, sight[row - begin], light[row - begin]);
     }
 
     /// The columns of the base know nothing of what actors cover.
-    void cover(std::span<const CoveredEntry> covered, BlockSums& sums) const {
-        for (const CoveredEntry& entry : covered)
-            add_light(sums[entry.row % block_size], entry.value,
-                      to_double({work_.change[entry.now].v - work_.change[entry.base].v}).v);
+    void cover(const LayeredRows& layer, std::size_t block, BlockSums& sums) const {
+        for_covered(layer, block, [&](std::size_t row, Index base, Index now, float value) {
+            // Few patches are pushed, and these bytes stay near at hand.
+            if ((work_.is_pushed[now] | work_.is_pushed[base]) != 0)
+                add_light(sums[row % block_size], value,
+                          to_double({work_.change[now].v - work_.change[base].v}).v);
+        });
     }
 
     ResidualState& state_;
@@ -181,7 +183,10 @@ ResidualState make_residual_state(const ResidualProblem& problem, const Context&
     check(problem, patches);
     ResidualState state;
     state.radiosity.resize(patches + 1);
-    for (std::size_t i = 0; i < patches; ++i) state.radiosity[i] = to_lanes(problem.emission[i]);
+    for (std::size_t i = 0; i < patches; ++i) {
+        state.radiosity[i] = to_lanes(problem.emission[i]);
+        state.radiosity[i].v[3] = 1;
+    }
     state.by_sight.resize(patches);
     state.by_light.resize(patches);
     state.irradiance.assign(patches, Rgb(0));

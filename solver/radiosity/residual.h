@@ -50,7 +50,9 @@ enum class ResidualStatus {
 /// A solution that follows its problem: radiosity, and what each row gathers of it. The residual
 /// r = E + ρ (F B + H0) − B follows from them row by row, for whatever E, ρ and H0 there are.
 struct ResidualState {
-    std::vector<Lanes> radiosity;       ///< B, W/m², by patch, and 0 for LayeredMatrix::nowhere
+    /// B, W/m², by patch, and 0 for LayeredMatrix::nowhere. The fourth lane is solved along with the others:
+    /// w = 1 + ρ F w with the largest channel's ρ, which tells how far a residual can get, see `step`.
+    std::vector<Lanes> radiosity;
     std::vector<DoubleLanes> by_sight;  ///< Σ of the sight layer times B, by row, unscaled
     std::vector<DoubleLanes> by_light;  ///< likewise of the light layer
     std::vector<DoubleLanes> by_whole;  ///< by whole row, of this moment
@@ -58,14 +60,15 @@ struct ResidualState {
     std::uint64_t pushes = 0;           ///< patches whose radiosity was changed, over all rounds
     std::uint64_t rounds = 0;           ///< of them, or sweeps
     std::uint64_t sweeps = 0;
-    /// How often pushes reached a row since its sums were computed; at 64 they are computed afresh. Light
-    /// that nothing reaches so keeps every bit.
-    std::vector<std::uint8_t> wear;
+    /// How much rounding a row's sums may have gathered since they were computed, as a share of what is let
+    /// pass; at 1 they are computed afresh. Light that nothing reaches so keeps every bit.
+    std::vector<float> wear;
     ResidualStatus status = ResidualStatus::running;
 
     /// Room to work in that is kept, since it takes longer to get than to use; means nothing between calls.
     struct Workspace {
         std::vector<Lanes> change;              ///< of B, by patch, since the sums were right
+        std::vector<std::uint8_t> is_pushed;    ///< by patch: whether there is any
         std::vector<Lanes> by_sight, by_light;  ///< what the sums of the layers are still to receive
         std::vector<Lanes> residual;            ///< r, W/m², by patch, without what is still to be received
         std::vector<Lanes> of_sight, of_light;  ///< by row: which share of it gets into the residual
@@ -86,10 +89,13 @@ void follow(ResidualState& state, const ResidualProblem& problem, std::span<cons
 
 /// Pushes the largest residuals, signed, until the certificate is met, only rounding is left, or
 /// `config.max_pushes` more were made. E, ρ and H0 may differ from those of the call before. Returns the
-/// certificate of E + ρH: its error is at most g times that of B, and the residual of B is computed, not
-/// estimated, with the rounding of sums added. Same bits for any number of threads and any division into
-/// calls. Source: Southwell's relaxation; Chen 1990, whose ± energy it generalises. Errors: cannot_converge
-/// where the gain is 1 or more; invalid_input; cancelled, after which the state is of no more use.
+/// certificate of E + ρH. The residual of B is computed, not estimated, with the rounding of sums added. B is
+/// off by (1 − ρF)⁻¹ r, and what is shown by ρF (1 − ρF)⁻¹ r: at most g ‖r‖∞ / (1 − g), and, since F has no
+/// negative entries, at most max ρFw ‖r‖∞ / (1 − δ) for any w ≥ 0 with w ≥ 1 + ρFw − δ, δ < 1. The smaller
+/// one is promised; with w, mean reflectances count where g has the largest. Same bits for any number of
+/// threads and any division into calls. Source: Southwell's relaxation; Chen 1990, whose ± energy it
+/// generalises. Errors: cannot_converge where the gain is 1 or more; invalid_input; cancelled, after which
+/// the state is of no more use.
 Certificate step(ResidualState& state, const ResidualProblem& problem, const ResidualConfig& config,
                  const Context& context);
 

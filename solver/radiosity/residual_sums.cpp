@@ -1,21 +1,29 @@
 #include "solver/radiosity/residual_sums.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace afterglow {
 
 namespace {
 
 constexpr std::size_t rows_per_chunk = 128;
+// A row's sums are computed afresh after so many additions, or when these amount to a share of the sums: so
+// rounding never accumulates.
+constexpr std::size_t most_additions = 256;
+constexpr float wear_each = 1.0F / most_additions;
+constexpr float most_share = 0.25F;
 constexpr std::size_t whole_rows_per_chunk = 64;
 
 /// What rows of a layer gather, computed afresh.
 void gather_layer(const LayeredRows& layer, std::size_t first, std::size_t last,
                   std::span<const Lanes> radiosity, std::vector<DoubleLanes>& sums) {
     for (std::size_t row = first; row < last; ++row) sums[row] = gather_row(layer.base, row, radiosity);
-    for (std::size_t near = first; near < last; near = (near / block_size + 1) * block_size)
-        for (const CoveredEntry& entry : layer.covered_near(near))
-            if (first <= entry.row && entry.row < last)
-                add_light(sums[entry.row], entry.value,
-                          to_double(radiosity[entry.now]).v - to_double(radiosity[entry.base]).v);
+    for (std::size_t b = first / block_size; b < layer.covered.size() && b * block_size < last; ++b)
+        for_covered(layer, b, [&](std::size_t row, Index base, Index now, float value) {
+            if (first <= row && row < last)
+                add_light(sums[row], value, to_double(radiosity[now]).v - to_double(radiosity[base]).v);
+        });
 }
 
 }  // namespace
@@ -25,7 +33,27 @@ void gather_rows(ResidualState& state, const ResidualProblem& problem, std::size
     gather_layer(problem.matrix.light, first, last, state.radiosity, state.by_light);
     // They began together; each is computed afresh in its own turn.
     for (std::size_t row = first; row < last; ++row)
-        state.wear[row] = static_cast<std::uint8_t>(row % most_wear);
+        state.wear[row] = wear_each * static_cast<float>(row % most_additions);
+}
+
+void add_to_row(ResidualState& state, const ResidualProblem& problem, std::size_t row,
+                const DoubleLanes& by_sight, const DoubleLanes& by_light) {
+    if (!is_any(by_sight) && !is_any(by_light)) {
+        // What only the fourth lane has got leaves the others their bits.
+        state.by_sight[row].v[3] += by_sight.v[3];
+        state.by_light[row].v[3] += by_light.v[3];
+        return;
+    }
+    const auto largest = [](const DoubleLanes& light) {
+        return std::max({std::abs(light.v[0]), std::abs(light.v[1]), std::abs(light.v[2])});
+    };
+    // What is on its way is rounded to float, relative to itself.
+    const double share = std::max(largest(by_sight), largest(by_light)) /
+                         std::max(largest(state.by_sight[row]), largest(state.by_light[row]));
+    state.by_sight[row].v += by_sight.v;
+    state.by_light[row].v += by_light.v;
+    state.wear[row] += wear_each + static_cast<float>(share) / most_share;
+    if (!(state.wear[row] < 1)) gather_rows(state, problem, row, row + 1);
 }
 
 void gather_all(ResidualState& state, const ResidualProblem& problem, const Context& context) {

@@ -6,9 +6,6 @@ namespace afterglow {
 
 // What every row gathers of the radiosity, as a ResidualState keeps it; `step` is made of this.
 
-/// Additions after which a row's sums are computed afresh, so that rounding never accumulates.
-inline constexpr std::uint8_t most_wear = 64;
-
 inline bool is_any(const DoubleLanes& light) {
     return light.v[0] != 0 || light.v[1] != 0 || light.v[2] != 0;
 }
@@ -20,7 +17,11 @@ inline void add_light(DoubleLanes& sum, float value, const DoubleLanes::Vector& 
 /// The sums of rows [first, last) computed afresh. Thread-safety: other rows may be computed meanwhile.
 void gather_rows(ResidualState& state, const ResidualProblem& problem, std::size_t first, std::size_t last);
 
-/// Likewise of all rows in layers. Same bits for any number of threads. Errors: cancelled.
+/// Adds to a row's sums what pushes brought it, and computes them afresh where that has happened too often.
+void add_to_row(ResidualState& state, const ResidualProblem& problem, std::size_t row,
+                const DoubleLanes& by_sight, const DoubleLanes& by_light);
+
+/// The sums of all rows in layers computed afresh. Same bits for any number of threads. Errors: cancelled.
 void gather_all(ResidualState& state, const ResidualProblem& problem, const Context& context);
 
 /// The sums of the whole rows. Same bits for any number of threads. Errors: cancelled.

@@ -8,6 +8,13 @@ namespace {
 
 constexpr std::size_t rows_per_chunk = 512;
 
+// What single precision may hide of a fourth lane, which is 1 to some tens.
+constexpr double fourth_rounding = 1e-4;
+
+Lanes with_fourth(const Rgb& light, float fourth) {
+    return {Lanes::Vector{light.r, light.g, light.b, fourth}};
+}
+
 float largest_channel(const Lanes& light) {
     const Lanes::Vector size = light.v < 0 ? -light.v : light.v;
     return std::max(std::max(size[0], size[1]), size[2]);
@@ -23,7 +30,7 @@ Surveyor::Surveyor(ResidualState& state, const ResidualProblem& problem)
     work_.of_light.resize(rows);
     work_.magnitude.resize(rows);
     for (std::size_t i = 0; i < rows; ++i) {
-        const Lanes reflectance = to_lanes(problem.reflectance[i]);
+        const Lanes reflectance = with_fourth(problem.reflectance[i], max_channel(problem.reflectance[i]));
         work_.of_sight[i].v = problem.matrix.sight.scale[i] * reflectance.v;
         work_.of_light[i].v = problem.matrix.light.scale[i] * reflectance.v;
     }
@@ -43,17 +50,30 @@ Survey Surveyor::look(double gain, double asked_error, const Context& context) {
     for (const Part& part : parts) {
         all.largest = std::max(all.largest, part.largest);
         all.brightest = std::max(all.brightest, part.brightest);
+        all.amplified = std::max(all.amplified, part.amplified);
+        all.missing = std::max(all.missing, part.missing);
         all.mean.add(part.mean);
     }
-    const double left = gain * static_cast<double>(all.largest);
     const double rounding = gather_rounding * static_cast<double>(all.brightest);
+    const double left = gain * static_cast<double>(all.largest);
     const double mean = all.mean.value();
+    const double a = all.amplification(gain);
     Survey survey;
     survey.largest = all.largest;
-    survey.enough = gain > 0 ? std::max(asked_error * mean * (1 - gain) - rounding, 0.0) / gain : 0;
+    survey.enough = a > 0 ? std::max(asked_error * mean - (1 + a) * rounding, 0.0) / a : 0;
     survey.certificate = make_certificate(left + rounding, gain, mean);
+    if (mean > 0)
+        survey.certificate.error_bound =
+            std::min(survey.certificate.error_bound, (a * survey.largest + (1 + a) * rounding) / mean);
     survey.only_rounding = 8 * left <= rounding;
     return survey;
+}
+
+double Surveyor::Part::amplification(double gain) const {
+    const double by_gain = gain / (1 - gain);
+    const double short_of = std::max(static_cast<double>(missing), 0.0) + fourth_rounding;
+    if (short_of >= 1) return by_gain;
+    return std::min(by_gain, (static_cast<double>(amplified) + fourth_rounding) / (1 - short_of));
 }
 
 Surveyor::Part Surveyor::look_at(std::size_t first, std::size_t last) {
@@ -63,15 +83,18 @@ Surveyor::Part Surveyor::look_at(std::size_t first, std::size_t last) {
         DoubleLanes::Vector sum = static_cast<double>(matrix.sight.scale[i]) * state_.by_sight[i].v +
                                   static_cast<double>(matrix.light.scale[i]) * state_.by_light[i].v;
         if (const Index k = work_.place_of_whole[i]; k != no_index) sum += state_.by_whole[k].v;
-        const Rgb irradiance =
-            to_rgb({__builtin_convertvector(sum, Lanes::Vector)}) + problem_.external_irradiance[i];
-        const Rgb reflected = problem_.reflectance[i] * irradiance;
-        state_.irradiance[i] = irradiance;
-        work_.residual[i] = to_lanes(problem_.emission[i] + reflected - to_rgb(state_.radiosity[i]));
+        const Rgb& reflectance = problem_.reflectance[i];
+        const Lanes::Vector irradiance =
+            __builtin_convertvector(sum, Lanes::Vector) + to_lanes(problem_.external_irradiance[i]).v;
+        const Lanes::Vector reflected = with_fourth(reflectance, max_channel(reflectance)).v * irradiance;
+        state_.irradiance[i] = to_rgb({irradiance});
+        work_.residual[i].v = with_fourth(problem_.emission[i], 1).v + reflected - state_.radiosity[i].v;
         work_.magnitude[i] = largest_channel(work_.residual[i]);
         part.largest = std::max(part.largest, work_.magnitude[i]);
-        part.brightest = std::max(part.brightest, max_channel(glm::abs(reflected)));
-        part.mean.add(problem_.area[i], problem_.emission[i], reflected);
+        part.brightest = std::max(part.brightest, largest_channel({reflected}));
+        part.amplified = std::max(part.amplified, reflected[3]);
+        part.missing = std::max(part.missing, work_.residual[i].v[3]);
+        part.mean.add(problem_.area[i], problem_.emission[i], to_rgb({reflected}));
     }
     return part;
 }

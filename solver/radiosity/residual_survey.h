@@ -41,7 +41,12 @@ class Surveyor {
     struct Part {
         float largest = 0;    // residual
         float brightest = 0;  // reflected
+        float amplified = 0;  // ρ F w, see ResidualState::radiosity
+        float missing = -1;   // 1 + ρ F w − w
         ReflectedMean mean;
+
+        // How many times the largest residual what is shown may be off.
+        [[nodiscard]] double amplification(double gain) const;
     };
     Part look_at(std::size_t first, std::size_t last);
 

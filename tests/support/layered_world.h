@@ -48,11 +48,12 @@ inline std::vector<double> dense_row(const LayeredMatrix& matrix, std::size_t ro
         const double scale = layer->scale[row];
         for (auto e = layer->base.row_begin[row]; e < layer->base.row_begin[row + 1]; ++e)
             sum[layer->base.column[e]] += scale * static_cast<double>(layer->base.value[e]);
-        for (const CoveredEntry& entry : layer->covered_near(row)) {
-            if (entry.row != row) continue;
-            sum[entry.base] -= scale * static_cast<double>(entry.value);
-            sum[entry.now] += scale * static_cast<double>(entry.value);
-        }
+        if (row / block_size >= layer->covered.size()) continue;
+        for_covered(*layer, row / block_size, [&](std::size_t of, Index base, Index now, float value) {
+            if (of != row) return;
+            sum[base] -= scale * static_cast<double>(value);
+            sum[now] += scale * static_cast<double>(value);
+        });
     }
     for (std::size_t k = 0; k < matrix.whole_rows.size(); ++k)
         if (matrix.whole_rows[k] == row)

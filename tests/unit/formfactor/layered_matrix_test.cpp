@@ -80,11 +80,12 @@ TEST(LayeredMatrix, ChangesSayWhatTheLayersDid) {
     world.show_at(0);
     const auto unscaled = [&](std::size_t row) {
         std::vector<double> sum(world.matrix.rows() + 1, 0);
-        for (const CoveredEntry& entry : world.matrix.sight.covered_near(row)) {
-            if (entry.row != row) continue;
-            sum[entry.base] -= 1;
-            sum[entry.now] += 1;
-        }
+        if (row >= world.lined.mesh.static_size()) return sum;
+        for_covered(world.matrix.sight, row / block_size, [&](std::size_t of, Index base, Index now, float) {
+            if (of != row) return;
+            sum[base] -= 1;
+            sum[now] += 1;
+        });
         return sum;
     };
     std::vector<std::vector<double>> rows;
