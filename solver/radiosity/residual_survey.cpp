@@ -53,7 +53,18 @@ Survey Surveyor::look(double gain, double asked_error, const Context& context) {
     survey.enough = gain > 0 ? std::max(asked_error * mean * (1 - gain) - rounding, 0.0) / gain : 0;
     survey.certificate = make_certificate(left + rounding, gain, mean);
     survey.only_rounding = 8 * left <= rounding;
+    enough_ = survey.enough;
+    context.for_chunks(rows, rows_per_chunk, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) work_.magnitude[i] = magnitude(i, work_.residual[i]);
+    });
     return survey;
+}
+
+float Surveyor::magnitude(std::size_t i, const Lanes& residual) const {
+    const float size = largest_channel(residual);
+    if (state_.left.empty() || static_cast<double>(size) > enough_) return size;
+    const Lanes::Vector off = residual.v - state_.left[i].v;
+    return off[0] == 0 && off[1] == 0 && off[2] == 0 ? 0 : size;
 }
 
 Surveyor::Part Surveyor::look_at(std::size_t first, std::size_t last) {
@@ -68,8 +79,7 @@ Surveyor::Part Surveyor::look_at(std::size_t first, std::size_t last) {
         const Rgb reflected = problem_.reflectance[i] * irradiance;
         state_.irradiance[i] = irradiance;
         work_.residual[i] = to_lanes(problem_.emission[i] + reflected - to_rgb(state_.radiosity[i]));
-        work_.magnitude[i] = largest_channel(work_.residual[i]);
-        part.largest = std::max(part.largest, work_.magnitude[i]);
+        part.largest = std::max(part.largest, largest_channel(work_.residual[i]));
         part.brightest = std::max(part.brightest, max_channel(glm::abs(reflected)));
         part.mean.add(problem_.area[i], problem_.emission[i], reflected);
     }
@@ -82,7 +92,7 @@ float Surveyor::look_again(const Context& context) {
     context.for_chunks(rows, rows_per_chunk, [&](std::size_t first, std::size_t last) {
         float here = 0;
         for (std::size_t i = first; i < last; ++i) {
-            work_.magnitude[i] = largest_channel(residual(i));
+            work_.magnitude[i] = magnitude(i, residual(i));
             here = std::max(here, work_.magnitude[i]);
         }
         largest[first / rows_per_chunk] = here;
