@@ -18,6 +18,9 @@ constexpr std::size_t rows_per_chunk = 512;
 // Rounds go on to this share of what is good enough, so that the exact survey after them is seldom the last
 // but one.
 constexpr double near_enough = 0.8;
+// What the first solution is asked for, relative to what is asked: how far others' light may dim before what
+// it leaves is too much.
+constexpr double first_share = 0.5;
 
 double gain_of(const ResidualProblem& problem) {
     double gain = 0;
@@ -94,10 +97,14 @@ class Pusher {
 
     bool sweep(const Context& context) {
         const std::uint64_t before = state_.pushes;
-        for (std::size_t i = 0; i < work_.residual.size(); ++i) take_up(i);
-        std::fill(work_.change.begin(), work_.change.end(), Lanes{});
+        for (std::size_t i = 0; i < work_.residual.size(); ++i)
+            if (work_.magnitude[i] > 0) take_up(i);
         ++state_.sweeps;
-        gather_all(state_, problem_, context);
+        if (state_.left.empty())
+            gather_all(state_, problem_, context);
+        else
+            gather_reached(state_, problem_, work_.change, context);
+        std::fill(work_.change.begin(), work_.change.end(), Lanes{});
         gather_whole(state_, problem_, context);
         return state_.pushes > before;
     }
@@ -110,6 +117,9 @@ class Pusher {
         for (const Index i : patches) {
             const Lanes change = take_up(i);
             work_.is_pushed[i] = 1;
+            state_.entries += problem_.matrix.sight_columns.column_begin[i + 1] -
+                              problem_.matrix.sight_columns.column_begin[i] + of_lamps.column_begin[i + 1] -
+                              of_lamps.column_begin[i];
             for_column(problem_.matrix.sight_columns, i,
                        [&](Index row, float lines) { by_sight[row].v += lines * change.v; });
             if (of_lamps.column_begin[i] == of_lamps.column_begin[i + 1]) continue;
@@ -224,19 +234,19 @@ Certificate step(ResidualState& state, const ResidualProblem& problem, const Res
     Surveyor surveyor(state, problem);
     Pusher pusher(state, problem, surveyor);
     const std::uint64_t pushes_before = state.pushes;
+    const double asked = (state.left.empty() ? first_share : 1) * config.asked_error;
     for (;;) {
-        const Survey survey = surveyor.look(gain, config.asked_error, context);
-        if (survey.certificate.error_bound <= config.asked_error)
-            state.status = ResidualStatus::converged;
-        else if (survey.only_rounding)
-            state.status = ResidualStatus::exhausted;
-        if (state.status != ResidualStatus::running || state.pushes - pushes_before >= config.max_pushes)
-            return survey.certificate;
+        const Survey survey = surveyor.look(gain, asked, context);
+        const bool is_met = survey.certificate.error_bound <= asked;
+        const bool may_go_on = state.pushes - pushes_before < config.max_pushes;
         context.check_stop();
-        if (!pusher.push(survey, config, context)) {
-            state.status = ResidualStatus::exhausted;
+        if (is_met || survey.only_rounding || (may_go_on && !pusher.push(survey, config, context))) {
+            const bool is_enough = survey.certificate.error_bound <= config.asked_error;
+            state.status = is_enough ? ResidualStatus::converged : ResidualStatus::exhausted;
+            state.left = state.workspace.residual;
             return survey.certificate;
         }
+        if (!may_go_on) return survey.certificate;
     }
 }
 

@@ -57,9 +57,11 @@ struct ResidualState {
     std::vector<DoubleLanes> by_light;  ///< likewise of the light layer
     std::vector<DoubleLanes> by_whole;  ///< by whole row, of this moment
     std::vector<Rgb> irradiance;        ///< H, W/m², by patch: what is shown is E + ρH
+    std::vector<Lanes> left;            ///< r when a solution was last finished, by patch; none before
     std::uint64_t pushes = 0;           ///< patches whose radiosity was changed, over all rounds
     std::uint64_t rounds = 0;           ///< of them, or sweeps
     std::uint64_t sweeps = 0;
+    std::uint64_t entries = 0;  ///< of columns that pushes went along, sweeps apart
     /// How much rounding a row's sums may have gathered since they were computed, as a share of what is let
     /// pass; at 1 they are computed afresh. Light that nothing reaches so keeps every bit.
     std::vector<float> wear;
@@ -72,8 +74,9 @@ struct ResidualState {
         std::vector<Lanes> by_sight, by_light;  ///< what the sums of the layers are still to receive
         std::vector<Lanes> residual;            ///< r, W/m², by patch, without what is still to be received
         std::vector<Lanes> of_sight, of_light;  ///< by row: which share of it gets into the residual
-        std::vector<float> magnitude;           ///< largest channel of |r| with it
-        std::vector<Index> place_of_whole;      ///< by row: where it stands among the whole ones
+        /// Largest channel of |r| with it; 0 where r was left as it is and is still good enough.
+        std::vector<float> magnitude;
+        std::vector<Index> place_of_whole;  ///< by row: where it stands among the whole ones
     } workspace;
 };
 
@@ -87,12 +90,15 @@ ResidualState make_residual_state(const ResidualProblem& problem, const Context&
 void follow(ResidualState& state, const ResidualProblem& problem, std::span<const RowChanges> changes,
             const Context& context);
 
-/// Pushes the largest residuals, signed, until the certificate is met, only rounding is left, or
-/// `config.max_pushes` more were made. E, ρ and H0 may differ from those of the call before. Returns the
-/// certificate of E + ρH. The residual of B is computed, not estimated, with the rounding of sums added. B is
-/// off by (1 − ρF)⁻¹ r, and what is shown by ρF (1 − ρF)⁻¹ r: at most g ‖r‖∞ / (1 − g), and, since F has no
-/// negative entries, at most max ρFw ‖r‖∞ / (1 − δ) for any w ≥ 0 with w ≥ 1 + ρFw − δ, δ < 1. The smaller
-/// one is promised; with w, mean reflectances count where g has the largest. Same bits for any number of
+/// Pushes the largest residuals, signed, until the certificate is met, the first time by half, so that what
+/// is left then may stay when others' light dims. Later a patch whose residual is as it was left keeps it as
+/// long as it is good enough: light that no change reaches keeps every bit. Stops when the certificate is
+/// met, only rounding is left, or `config.max_pushes` more were made. E, ρ and H0 may differ from those of
+/// the call before. Returns the certificate of E + ρH. The residual of B is computed, not estimated, with the
+/// rounding of sums added. B is off by (1 − ρF)⁻¹ r, and what is shown by ρF (1 − ρF)⁻¹ r: at most
+/// g ‖r‖∞ / (1 − g), and, since F has no negative entries, at most max ρFw ‖r‖∞ / (1 − δ) for any w ≥ 0 with
+/// w ≥ 1 + ρFw − δ, δ < 1. The smaller one is promised; with w, mean reflectances count where g has the
+/// largest. Same bits for any number of
 /// threads and any division into calls. Source: Southwell's relaxation; Chen 1990, whose ± energy it
 /// generalises. Errors: cannot_converge where the gain is 1 or more; invalid_input; cancelled, after which
 /// the state is of no more use.

@@ -62,6 +62,24 @@ void gather_all(ResidualState& state, const ResidualProblem& problem, const Cont
     });
 }
 
+void gather_reached(ResidualState& state, const ResidualProblem& problem, std::span<const Lanes> change,
+                    const Context& context) {
+    std::vector<std::uint8_t> changed(change.size());
+    for (std::size_t j = 0; j < change.size(); ++j) changed[j] = is_any(to_double(change[j])) ? 1 : 0;
+    const auto reaches = [&](const LayeredRows& layer, std::size_t row) {
+        for (std::uint64_t e = layer.base.row_begin[row]; e < layer.base.row_begin[row + 1]; ++e)
+            if (changed[layer.base.column[e]] != 0) return true;
+        for (const CoveredEntry& entry : layer.covered_near(row))
+            if (entry.row == row && (changed[entry.now] | changed[entry.base]) != 0) return true;
+        return false;
+    };
+    context.for_chunks(problem.matrix.rows(), rows_per_chunk, [&](std::size_t first, std::size_t last) {
+        for (std::size_t row = first; row < last; ++row)
+            if (reaches(problem.matrix.sight, row) || reaches(problem.matrix.light, row))
+                gather_rows(state, problem, row, row + 1);
+    });
+}
+
 void gather_whole(ResidualState& state, const ResidualProblem& problem, const Context& context) {
     state.by_whole.resize(problem.matrix.whole_rows.size());
     context.for_chunks(state.by_whole.size(), whole_rows_per_chunk, [&](std::size_t first, std::size_t last) {

@@ -24,6 +24,11 @@ void add_to_row(ResidualState& state, const ResidualProblem& problem, std::size_
 /// The sums of all rows in layers computed afresh. Same bits for any number of threads. Errors: cancelled.
 void gather_all(ResidualState& state, const ResidualProblem& problem, const Context& context);
 
+/// Likewise of the rows in layers that gather any light which `change` says has changed, by patch and
+/// `nowhere`; the others keep every bit.
+void gather_reached(ResidualState& state, const ResidualProblem& problem, std::span<const Lanes> change,
+                    const Context& context);
+
 /// The sums of the whole rows. Same bits for any number of threads. Errors: cancelled.
 void gather_whole(ResidualState& state, const ResidualProblem& problem, const Context& context);
 

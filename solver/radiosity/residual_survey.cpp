@@ -66,6 +66,10 @@ Survey Surveyor::look(double gain, double asked_error, const Context& context) {
         survey.certificate.error_bound =
             std::min(survey.certificate.error_bound, (a * survey.largest + (1 + a) * rounding) / mean);
     survey.only_rounding = 8 * left <= rounding;
+    enough_ = survey.enough;
+    context.for_chunks(rows, rows_per_chunk, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) work_.magnitude[i] = magnitude(i, work_.residual[i]);
+    });
     return survey;
 }
 
@@ -74,6 +78,13 @@ double Surveyor::Part::amplification(double gain) const {
     const double short_of = std::max(static_cast<double>(missing), 0.0) + fourth_rounding;
     if (short_of >= 1) return by_gain;
     return std::min(by_gain, (static_cast<double>(amplified) + fourth_rounding) / (1 - short_of));
+}
+
+float Surveyor::magnitude(std::size_t i, const Lanes& residual) const {
+    const float size = largest_channel(residual);
+    if (state_.left.empty() || static_cast<double>(size) > enough_) return size;
+    const Lanes::Vector off = residual.v - state_.left[i].v;
+    return off[0] == 0 && off[1] == 0 && off[2] == 0 ? 0 : size;
 }
 
 Surveyor::Part Surveyor::look_at(std::size_t first, std::size_t last) {
@@ -89,8 +100,7 @@ Surveyor::Part Surveyor::look_at(std::size_t first, std::size_t last) {
         const Lanes::Vector reflected = with_fourth(reflectance, max_channel(reflectance)).v * irradiance;
         state_.irradiance[i] = to_rgb({irradiance});
         work_.residual[i].v = with_fourth(problem_.emission[i], 1).v + reflected - state_.radiosity[i].v;
-        work_.magnitude[i] = largest_channel(work_.residual[i]);
-        part.largest = std::max(part.largest, work_.magnitude[i]);
+        part.largest = std::max(part.largest, largest_channel(work_.residual[i]));
         part.brightest = std::max(part.brightest, largest_channel({reflected}));
         part.amplified = std::max(part.amplified, reflected[3]);
         part.missing = std::max(part.missing, work_.residual[i].v[3]);
@@ -105,7 +115,7 @@ float Surveyor::look_again(const Context& context) {
     context.for_chunks(rows, rows_per_chunk, [&](std::size_t first, std::size_t last) {
         float here = 0;
         for (std::size_t i = first; i < last; ++i) {
-            work_.magnitude[i] = largest_channel(residual(i));
+            work_.magnitude[i] = magnitude(i, residual(i));
             here = std::max(here, work_.magnitude[i]);
         }
         largest[first / rows_per_chunk] = here;

@@ -49,11 +49,14 @@ class Surveyor {
         [[nodiscard]] double amplification(double gain) const;
     };
     Part look_at(std::size_t first, std::size_t last);
+    /// As Workspace::magnitude has it, of a residual.
+    [[nodiscard]] float magnitude(std::size_t i, const Lanes& residual) const;
 
     ResidualState& state_;
     const ResidualProblem& problem_;
     ResidualState::Workspace& work_;
     bool expects_from_lamps_ = false;
+    double enough_ = 0;  // of the last look
 };
 
 }  // namespace afterglow

@@ -1,6 +1,6 @@
 // How much pictures flicker, by method, beside our own path tracer whose seed changes from frame to frame: a
-// table for flicker.py. What is true is the mean of two sequences of final quality, twice as many lines
-// and other seeds, certified to 0.2 %; half of what these two differ by is what their mean flickers itself:
+// table for flicker.py. What is true is the mean of two sequences of final quality with other
+// seeds, certified to 0.2 %; half of what these two differ by is what their mean flickers itself:
 // the row "truth". Usage: flicker SCENE [first frame] [last frame] [edge, pixels] [threads]
 
 #include "tests/support/flicker.h"
@@ -50,7 +50,7 @@ Pictures finest(const Run& run, std::uint64_t seed) {
     config.visibility = Visibility::events;
     config.solution = Solution::residual;
     config.quality = Quality::final;
-    config.rays_per_patch = 1024;
+    config.rays_per_patch = 512;
     // Beside a number of lines this is the certificate alone; patches are those of the quality.
     config.asked_error = 2e-3;
     config.picture_tolerance = 0;
@@ -100,10 +100,10 @@ void chart(const std::string& scene, const Run& run) {
         for (std::size_t k = 0; k < truth[f].pixels.size(); ++k)
             truth[f].pixels[k] = 0.5F * (one[f].pixels[k] + other[f].pixels[k]);
     print(scene, "truth", "truth", one, other, 0.5);
-    for (const Quality quality : {Quality::preview, Quality::final})
+    for (const Quality quality : {Quality::draft, Quality::preview})
         for (const Method& method : methods())
             if (method.visibility != Visibility::automatic)
-                print(scene, quality == Quality::preview ? "preview" : "final", method.name,
+                print(scene, quality == Quality::draft ? "draft" : "preview", method.name,
                       by_method(run, method, quality), truth);
     for (const int samples : {16, 64, 256}) {
         Pictures traced;

@@ -12,7 +12,7 @@ import sys
 
 methods = ["full", "baum86", "chen90", "tost-pueyo93", "events"]
 paths = ["paths-16", "paths-64", "paths-256"]
-colours = {"preview": "#e69f00", "final": "#0072b2", "paths": "#777777"}
+colours = {"draft": "#e69f00", "preview": "#0072b2", "paths": "#777777"}
 low, high = 1e-4, 1.0
 left, top, wide, row, gap = 122, 74, 290, 19, 40
 
@@ -62,7 +62,7 @@ def panel(found, scene, x0, rows):
 
 
 def draw(found):
-    rows = [(quality, method) for quality in ("preview", "final") for method in methods] + [("paths", p) for p in paths]
+    rows = [(quality, method) for quality in ("draft", "preview") for method in methods] + [("paths", p) for p in paths]
     scenes = sorted({key[0] for key in found})
     width, height = left + len(scenes) * (wide + gap), top + row * len(rows) + 46
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">',

@@ -105,5 +105,56 @@ TEST(Flicker, IsNoneWhileAllActorsRest) {
     }
 }
 
+/// Two rooms with nothing between them but walls, in each a lamp and furniture; the camera stands in the
+/// second, `actors` move in the first.
+World two_rooms(unsigned seed) {
+    World world = testing::empty_world(0.6F, Vec3(10, 1.5F, 4.7F));
+    world.materials.push_back(testing::diffuse("pale", Rgb(0.8F, 0.7F, 0.6F)));
+    Body& rooms = world.bodies[furniture];
+    for (const float x : {0.0F, 8.0F}) {
+        const Vec3 at(x, 0, 0);
+        testing::add_box(rooms, at, at + Vec3(4, 3, 5), 0, testing::Facing::inwards);
+        testing::add_quad(rooms, at + Vec3(1.5F, 2.98F, 2), Vec3(1, 0, 0), Vec3(0, 0, 1), 1);
+        testing::add_box(rooms, at + Vec3(0.5F, 0.7F, 0.5F), at + Vec3(1.8F, 0.75F, 1.5F), 2);
+    }
+    std::mt19937 random(seed);
+    const Box within{Vec3(0.5F, 0.5F, 0.5F), Vec3(3.5F, 2.2F, 4.5F)};
+    for (const auto turning : {testing::Turning::no, testing::Turning::yes}) {
+        Path path = testing::random_path(random, within, 4, turning);
+        for (Key<Pose>& key : path.keys) key.time_s *= 0.4;
+        testing::add_actor(world, turning == testing::Turning::no ? "slider" : "turner",
+                           Vec3(0.3F, 0.2F, 0.25F), 2, path);
+    }
+    world.duration_s = 1.6;
+    return world;
+}
+
+TEST(Flicker, IsNoneInASealedRoomBesideOneInWhichActorsMove) {
+    for (const unsigned seed : {1U, 2U, 3U}) {
+        SequenceConfig config = following();
+        config.asked_error = seed == 3 ? 0.1 : 0.01;
+        config.picture_tolerance = 0;
+        SequenceState state = make_state(two_rooms(seed), config, Context(2));
+        const auto frames = {0, 1, 2, 3, 4, 5, 6, 7, 8, 20, 19, 18, 3, 4};
+        std::vector<Picture> pictures;
+        std::vector<Rgb> sealed, moving;
+        bool moved = false;
+        for (const int frame : frames) {
+            pictures.push_back(picture_of(state, frame));
+            std::vector<Rgb> here, there;
+            const SequenceState::Parts& parts = state.parts();
+            for (Index p = 0; p < parts.mesh.static_size(); ++p)
+                (parts.mesh.centre[p].x > 6 ? here : there).push_back(light_of(state)[p]);
+            if (pictures.size() == 1) sealed = here;
+            EXPECT_TRUE(same_bits(here, sealed)) << "seed " << seed << " frame " << frame;
+            EXPECT_TRUE(same_bits(pictures.back().pixels, pictures[0].pixels))
+                << "seed " << seed << " frame " << frame;
+            moved = moved || (!moving.empty() && !same_bits(there, moving));
+            moving = there;
+        }
+        EXPECT_TRUE(moved);
+    }
+}
+
 }  // namespace
 }  // namespace afterglow
