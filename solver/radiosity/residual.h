@@ -98,10 +98,9 @@ void follow(ResidualState& state, const ResidualProblem& problem, std::span<cons
 /// rounding of sums added. B is off by (1 − ρF)⁻¹ r, and what is shown by ρF (1 − ρF)⁻¹ r: at most
 /// g ‖r‖∞ / (1 − g), and, since F has no negative entries, at most max ρFw ‖r‖∞ / (1 − δ) for any w ≥ 0 with
 /// w ≥ 1 + ρFw − δ, δ < 1. The smaller one is promised; with w, mean reflectances count where g has the
-/// largest. Same bits for any number of
-/// threads and any division into calls. Source: Southwell's relaxation; Chen 1990, whose ± energy it
-/// generalises. Errors: cannot_converge where the gain is 1 or more; invalid_input; cancelled, after which
-/// the state is of no more use.
+/// largest. Same bits for any number of threads and any division into calls. Source: Southwell's relaxation;
+/// Chen 1990, whose ± energy it generalises. Errors: cannot_converge where the gain is 1 or more;
+/// invalid_input; cancelled, after which the state is of no more use.
 Certificate step(ResidualState& state, const ResidualProblem& problem, const ResidualConfig& config,
                  const Context& context);
 

@@ -26,6 +26,19 @@ void gather_layer(const LayeredRows& layer, std::size_t first, std::size_t last,
         });
 }
 
+/// Marks the rows of a layer from `first` on that gather from a column that changed.
+void mark_reached(const LayeredRows& layer, std::size_t first, std::size_t last,
+                  std::span<const std::uint8_t> changed, std::span<std::uint8_t> reached) {
+    for (std::size_t row = first; row < last; ++row)
+        for (std::uint64_t e = layer.base.row_begin[row]; e < layer.base.row_begin[row + 1]; ++e)
+            reached[row - first] |= changed[layer.base.column[e]];
+    for (std::size_t b = first / block_size; b < layer.covered.size() && b * block_size < last; ++b)
+        for_covered(layer, b, [&](std::size_t row, Index base, Index now, float) {
+            if (first <= row && row < last)
+                reached[row - first] |= static_cast<std::uint8_t>(changed[now] | changed[base]);
+        });
+}
+
 }  // namespace
 
 void gather_rows(ResidualState& state, const ResidualProblem& problem, std::size_t first, std::size_t last) {
@@ -66,17 +79,16 @@ void gather_reached(ResidualState& state, const ResidualProblem& problem, std::s
                     const Context& context) {
     std::vector<std::uint8_t> changed(change.size());
     for (std::size_t j = 0; j < change.size(); ++j) changed[j] = is_any(to_double(change[j])) ? 1 : 0;
-    const auto reaches = [&](const LayeredRows& layer, std::size_t row) {
-        for (std::uint64_t e = layer.base.row_begin[row]; e < layer.base.row_begin[row + 1]; ++e)
-            if (changed[layer.base.column[e]] != 0) return true;
-        for (const CoveredEntry& entry : layer.covered_near(row))
-            if (entry.row == row && (changed[entry.now] | changed[entry.base]) != 0) return true;
-        return false;
-    };
     context.for_chunks(problem.matrix.rows(), rows_per_chunk, [&](std::size_t first, std::size_t last) {
-        for (std::size_t row = first; row < last; ++row)
-            if (reaches(problem.matrix.sight, row) || reaches(problem.matrix.light, row))
-                gather_rows(state, problem, row, row + 1);
+        std::vector<std::uint8_t> reached(last - first, 0);
+        mark_reached(problem.matrix.sight, first, last, changed, reached);
+        mark_reached(problem.matrix.light, first, last, changed, reached);
+        // Rows that follow each other are gathered together: what is covered stands by block.
+        for (std::size_t row = first; row < last; ++row) {
+            const std::size_t begin = row;
+            while (row < last && reached[row - first] != 0) ++row;
+            if (row > begin) gather_rows(state, problem, begin, row);
+        }
     });
 }
 
