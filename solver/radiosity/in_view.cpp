@@ -252,12 +252,16 @@ Certificate step_in_view(IncrementalState& state, const RadiosityProblem& proble
     const std::vector<double> allowed_unshot = allowed_by_group(rows, problem.reflectance, seen);
     const double g = state.enclosure.gain;
     double target = aim;
+    bool has_shot = false;  // since all rows were gathered
     for (;;) {
         context.check_stop();
         const double reflected = mean_reflected(problem, state.irradiance);
         const double allowed = config.asked_error * reflected, rounding = state.rounding / (1 - g);
-        if (rounding > most_rounding * allowed && state.rounding > 4 * least_rounding(state, problem)) {
+        // Only where that leaves room for more batches.
+        if (has_shot && rounding > most_rounding * allowed &&
+            4 * least_rounding(state, problem) / (1 - g) < most_rounding * allowed) {
             refresh(state, problem, context);
+            has_shot = false;
             continue;
         }
         // Below its rounding no solution need go.
@@ -274,6 +278,7 @@ Certificate step_in_view(IncrementalState& state, const RadiosityProblem& proble
             continue;
         }
         shoot_at_once(state, problem, columns, next, context);
+        has_shot = true;
     }
 }
 
