@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
@@ -70,6 +71,8 @@ Gate gate_of(const ServeConfig& config) {
 }  // namespace
 
 int serve(const ServeConfig& config, const std::stop_token& stop) {
+    // Where files may not grow further, writing fails like on a full disk instead of ending the process.
+    std::signal(SIGXFSZ, SIG_IGN);
     Gate gate = gate_of(config);
     std::optional<TemporaryFolder> temporary;
     if (config.data_folder.empty()) temporary.emplace();

@@ -68,6 +68,25 @@ TEST_F(Durability, FinishedFramesAreNeitherTornNorComputedAgain) {
     for (const auto& [frame, picture] : before) EXPECT_EQ(whole.at(frame), picture) << frame;
 }
 
+TEST_F(Durability, AFullDiskIsAClearErrorAndHarmsNothing) {
+    const std::string data = (folder_.path() / "small").string();
+    // A limit on the size of files stands for a disk that is full.
+    Process server({"/usr/bin/prlimit", "--fsize=50000", AFTERGLOW_BIN_DIR "/afterglowd", "serve", "--listen",
+                    "127.0.0.1:0", "--data", data});
+    const auto is_ready = [](const std::string& out) { return out.find('\n') != std::string::npos; };
+    ASSERT_TRUE(server.wait_for_output(is_ready)) << server.err();
+    const std::string out = server.out();
+    const auto at = out.find("http://");
+    const std::string url = out.substr(at, out.find('\n') - at);
+    ASSERT_GT(std::filesystem::file_size(data_file("living-room.glb")), 50'000U);
+    Process submit({AFTERGLOW_BIN_DIR "/afterglow", "submit", data_file("living-room.glb"), "--server", url});
+    EXPECT_NE(submit.wait(), 0);
+    EXPECT_THAT(submit.err(), testing::HasSubstr("disk is full"));
+    client::HttpConnection http(url, interrupt_);
+    EXPECT_EQ(http.get("/healthz").status, 200);
+    EXPECT_TRUE(std::filesystem::is_empty(std::filesystem::path(data) / "uploads")) << "nothing half-written";
+}
+
 TEST_F(Durability, ATerminatedServerKeepsItsJobs) {
     const std::string id = submit("living-room.glb", endless());
     server_->send_signal(SIGTERM);
