@@ -143,13 +143,25 @@ TEST(InView, GivesTheSameBitsForAnyNumberOfThreads) {
     }
 }
 
-TEST(InView, AnErrorFinerThanSinglePrecisionEnds) {
-    const OwnedProblem problem = test::random_problem(2, 60, test::Closure::closed, .8F);
-    const GroupedRows rows = group_rows(problem.matrix, in_runs(60), Context(1));
-    IncrementalState state = make_incremental_state(problem.view());
-    step_in_view(state, problem.view(), problem.columns(), rows, std::vector<std::uint8_t>(group_count, 1),
-                 {.asked_error = 1e-9}, Context(1));
-    EXPECT_EQ(state.status, ProgressiveStatus::exhausted);
+TEST(InView, EveryAskedErrorIsMetOrEndsWhereSinglePrecisionDoes) {
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        const OwnedProblem problem = test::random_problem(seed, 60, test::Closure::closed, .8F);
+        const GroupedRows rows = group_rows(problem.matrix, in_runs(60), Context(1));
+        const std::vector<std::uint8_t> all(group_count, 1);
+        for (double asked = 0.3; asked > 1e-10; asked *= 0.3) {
+            IncrementalState state = make_incremental_state(problem.view());
+            const Certificate certificate =
+                step_in_view(state, problem.view(), problem.columns(), rows, all, {asked}, Context(1));
+            EXPECT_EQ(state.status == ProgressiveStatus::converged, certificate.error_bound <= asked)
+                << asked;
+            if (asked > 1e-3) {
+                EXPECT_EQ(state.status, ProgressiveStatus::converged) << asked;
+            }
+            if (asked < 1e-8) {
+                EXPECT_EQ(state.status, ProgressiveStatus::exhausted) << asked;
+            }
+        }
+    }
 }
 
 TEST(InView, WhatDoesNotFitIsNamed) {
