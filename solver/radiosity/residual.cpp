@@ -87,11 +87,14 @@ class Pusher {
     /// B takes up its residual; returns by how much it changed.
     Lanes take_up(std::size_t i) {
         const Lanes before = state_.radiosity[i];
-        state_.radiosity[i].v += surveyor_.residual(i).v;
-        const Lanes change{state_.radiosity[i].v - before.v};
+        const Lanes after{before.v + surveyor_.residual(i).v};
+        const Lanes change{after.v - before.v};
+        // The fourth lane moves only where light does: nobody hears of it otherwise.
+        if (!is_any(to_double(change))) return {};
+        state_.radiosity[i] = after;
         work_.change[i].v += change.v;
         work_.residual[i].v -= change.v;
-        state_.pushes += is_any(to_double(change)) ? 1 : 0;
+        ++state_.pushes;
         return change;
     }
 

@@ -75,6 +75,9 @@ TEST(Residual, KeepsItsPromiseAtEveryTimeInAnyOrder) {
             light.move_to(time, asked);
             EXPECT_EQ(light.state.status, ResidualStatus::converged);
             EXPECT_LE(light.certificate.error_bound, asked);
+            // Never more than what the largest reflectance alone allows.
+            EXPECT_LE(light.certificate.error_bound,
+                      light.certificate.residual / (1 - light.certificate.gain) * 1.000001);
             // The reference itself is good to 1e-5.
             EXPECT_LE(light.actual_error(), light.certificate.error_bound * 1.001 + 2e-5)
                 << "seed " << seed << " time " << time;

@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include "solver/visibility/events.h"
 #include "solver/visibility/own_light_lines.h"
 #include "tests/support/actors.h"
 #include "tests/support/lined_world.h"
@@ -106,6 +107,35 @@ TEST(OwnLines, SeeWhatRetraceSeesInFramesInAnyOrder) {
     // Only ties may differ.
     EXPECT_LE(different, lines / 10'000);
     EXPECT_GT(of_others, 0U);
+}
+
+TEST(OwnLines, LookedAheadAlongSeeWhatRetraceSees) {
+    std::size_t lines = 0, different = 0, changed = 0;
+    for (unsigned seed = 1; seed <= 6; ++seed) {
+        Kept kept(testing::random_world(seed, static_cast<int>(seed), Movements::straight),
+                  seed % 3 == 0 ? 1 : 4);
+        kept.background = make_static_lines(kept.lined.mesh, kept.sight, kept.light);
+        extend_static_lines(kept.background, kept.lined.mesh, kept.sight, kept.light, kept.lined.caster, 32,
+                            Context(2));
+        const auto events = make_events(kept.lined.world, clock_of_tests, {8, 2});
+        for (const int frame : frames_in_any_order(seed)) {
+            const LineScene scene = kept.at(frame);
+            const std::vector<Index> before = kept.visible.patch;
+            // By parts that end before lines are repeated, and after.
+            for (const DirectionRange& range : {DirectionRange{0, 5}, {5, 20}, {20, 32}})
+                events->update(scene, range, kept.visible, Context(2));
+            const VisibleLines expected = kept.retraced(frame);
+            for (std::size_t k = kept.first_own_line(); k < expected.patch.size(); ++k) {
+                ++lines;
+                different += kept.visible.patch[k] != expected.patch[k] ? 1U : 0U;
+                changed += kept.visible.patch[k] != before[k] ? 1U : 0U;
+            }
+        }
+    }
+    std::printf("%zu of %zu lines differ\n", different, lines);
+    // Only ties may differ.
+    EXPECT_LE(different, lines / 10'000);
+    EXPECT_GT(changed, lines / 10);
 }
 
 TEST(OwnLines, DoNotRememberHowAFrameWasReached) {
