@@ -148,6 +148,7 @@ void change_a_path(Watched& watched, std::mt19937& random, Turning turning) {
 }
 
 TEST(Events, FollowChangedPathsAsIfBegunAnew) {
+    Disagreement found;
     for (const Turning turning : {Turning::no, Turning::yes}) {
         for (const unsigned seed : {1U, 2U, 3U, 4U}) {
             std::mt19937 random(seed);
@@ -158,16 +159,22 @@ TEST(Events, FollowChangedPathsAsIfBegunAnew) {
                 edited.show(frame, {0, 12});
                 edited.show(frame, {12, 32});
                 change_a_path(edited, random, turning);
-                Watched fresh(edited.lined.world, {16, 16});
+                // On the same lines: how far they are lifted depends on where actors begin.
+                const LinedWorld& lined = edited.lined;
+                const auto fresh = make_events(lined.world, clock_of_tests, {16, 16});
+                VisibleLines anew = make_visible_lines(lined.mesh, lined.sight, lined.light);
                 for (const int f : {frame, frame + 1, static_cast<int>(random() % 30)}) {
                     edited.show(f);
-                    fresh.show(f);
-                    EXPECT_EQ(edited.visible.patch, fresh.visible.patch) << seed << " " << round << " " << f;
-                    EXPECT_EQ(edited.visible.light_contribution, fresh.visible.light_contribution);
+                    fresh->update({lined.mesh, lined.sight, lined.light, lined.caster, edited.background, f},
+                                  {0, 32}, anew, Context(2));
+                    found.add(edited.visible, anew);
                 }
             }
         }
     }
+    // Ties only, as above.
+    EXPECT_LE(found.different, found.lines / 10'000);
+    std::printf("%zu of %zu lines differ\n", found.different, found.lines);
 }
 
 TEST(Events, APathThatIsTheSameInAWindowKeepsAllOfIt) {
