@@ -311,7 +311,8 @@ Picture FrameRefinement::final_picture(const Context& context) {
     const CameraView view = view_at(parts_.camera, time_s_, parts_.config.width, parts_.config.height);
     const QualityLevel level = level_of(parts_.config);
     Picture made;
-    if (parts_.camera.path.moves()) {
+    // What a single frame would keep costs more than it can save.
+    if (parts_.camera.path.moves() || parts_.config.frames_expected == 1) {
         made = render_picture(view, lit, level.picture, statistics_.rays_traced, context);
     } else {
         const KeptPictureConfig config{level.picture, level.picture_tolerance};

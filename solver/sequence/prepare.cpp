@@ -13,6 +13,10 @@ namespace afterglow {
 
 namespace {
 
+// Over an animation, at which furniture is judged by how near its actors come. More do not make better
+// pictures.
+constexpr int moments_of_actors = 8;
+
 void require(bool holds, const char* setting, const char* rule) {
     if (!holds) throw Error(ErrorKind::invalid_input, setting, rule);
 }
@@ -111,7 +115,8 @@ PatchMesh mesh_reached(SequenceState::Parts& parts, const Context& context) {
     coarseness.seed = parts.config.seed;
     // A hair less, so that halving a whole number of times reaches it.
     mesh.finest_m = 0.999F * level.finest_share * mesh.patch_size_m;
-    mesh.is_too_coarse = Coarseness(parts.caster, surfaces, parts.reached, lift_for(world), coarseness);
+    mesh.is_too_coarse = Coarseness(parts.caster, surfaces, parts.reached, lift_for(world), coarseness,
+                                    passing_actors(world, moments_of_actors));
     return make_patches(world, surfaces, parts.reached, mesh, context);
 }
 

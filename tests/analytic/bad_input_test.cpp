@@ -222,6 +222,45 @@ TEST(BadInput, LightsOnSurfacesInCornersInsideThingsAndDark) {
             }
 }
 
+/// Everything `factor` times as large.
+World scaled(World world, float factor) {
+    for (Body& body : world.bodies) {
+        for (Vec3& p : body.positions) p *= factor;
+        for (auto& key : body.path.keys) key.value.translation *= factor;
+    }
+    for (PlacedCamera& camera : world.cameras)
+        for (auto& key : camera.path.keys) key.value.translation *= factor;
+    return world;
+}
+
+/// Small pictures from patches that are refined where light bends, and from light that follows a frame.
+SequenceConfig refined() {
+    SequenceConfig config = quick();
+    config.patch_size_m.reset();
+    config.quality = Quality::preview;
+    config.solution = Solution::residual;
+    config.width = 24;
+    config.height = 18;
+    return config;
+}
+
+TEST(BadInput, RefinedPatchesOfAllOfThemAtOnce) {
+    World world = small_room();
+    Body& body = world.bodies[furniture];
+    const Vec3 a(1, 1, 1), b(3, 1, 1);
+    // No area; almost none; the floor again, turned over; a wall's part twice; a lamp in a lamp.
+    add_triangle(world, a, a, b);
+    for (const float height : {1e-3F, 1e-5F, 1e-7F}) add_triangle(world, a, b, Vec3(2, 1 + height, 1), 1);
+    add_quad(body, Vec3(0), Vec3(4, 0, 0), Vec3(0, 0, 5), 0);
+    for (int times = 0; times < 2; ++times)
+        add_quad(body, Vec3(0.5F, 0.5F, 0), Vec3(2, 0, 0), Vec3(0, 2, 0), 0);
+    add_quad(body, Vec3(1.5F, 2.98F, 2), Vec3(1, 0, 0), Vec3(0, 0, 1), 1);
+    for (const float size_m : {1e-3F, 1e4F}) {
+        SCOPED_TRACE(size_m);
+        EXPECT_GT(mean_of(expect_clean(scaled(world, size_m / 4), refined())), 0);
+    }
+}
+
 TEST(BadInput, NumbersThatAreNone) {
     const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
     for (const float bad : {nan, inf, -inf}) {
@@ -235,17 +274,6 @@ TEST(BadInput, NumbersThatAreNone) {
         world.bodies[1].path.keys[1].value.translation.x = bad;
         EXPECT_THAT(refusal_of(world), ::testing::HasSubstr("walker")) << bad;
     }
-}
-
-/// Everything `factor` times as large.
-World scaled(World world, float factor) {
-    for (Body& body : world.bodies) {
-        for (Vec3& p : body.positions) p *= factor;
-        for (auto& key : body.path.keys) key.value.translation *= factor;
-    }
-    for (PlacedCamera& camera : world.cameras)
-        for (auto& key : camera.path.keys) key.value.translation *= factor;
-    return world;
 }
 
 TEST(BadInput, ScenesOfAnySizeLookTheSame) {

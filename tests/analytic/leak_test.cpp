@@ -1,3 +1,4 @@
+#include <cmath>
 #include <functional>
 #include <ostream>
 
@@ -287,6 +288,35 @@ DarkSide room_with_folding_screen() {
             }};
 }
 
+/// A sheet through the points of (u, v) in [0,1]²; if its facets are small, meshed as one curved surface.
+void add_curved(World& world, const std::function<Vec3(float, float)>& at, Index facets_u, Index facets_v) {
+    Body& body = world.bodies[furniture];
+    const auto first = static_cast<Index>(body.positions.size());
+    for (Index k = 0; k < (facets_u + 1) * (facets_v + 1); ++k) {
+        const Index u = k % (facets_u + 1), v = k / (facets_u + 1), a = first + k, b = a + facets_u + 1;
+        body.positions.push_back(at(static_cast<float>(u) / static_cast<float>(facets_u),
+                                    static_cast<float>(v) / static_cast<float>(facets_v)));
+        body.texture_coordinates.emplace_back(0);
+        if (u == facets_u || v == facets_v) continue;
+        body.triangles.push_back({{a, a + 1, b + 1}, 0});
+        body.triangles.push_back({{a, b + 1, b}, 0});
+    }
+}
+
+/// A wall that winds across the room, with bumps on both faces: facets that curve both ways.
+DarkSide room_with_bumpy_wall() {
+    const auto middle = [](float z) { return 4 + 0.3F * std::sin(0.5F * pi * z); };
+    World world = room_to_divide();
+    for (const float side : {-1.0F, 1.0F}) {
+        const auto face = [&](float u, float v) {
+            const float bump = 0.15F + 0.03F * std::sin(8 * pi * u) * std::sin(8 * pi * v);
+            return Vec3(middle(4 * u) + side * bump, 5 * v, 4 * u);
+        };
+        add_curved(world, face, 40, 50);
+    }
+    return {std::move(world), [middle](const Vec3& p) { return p.x < middle(p.z); }};
+}
+
 constexpr float below_a_lift = 1e-4F;  // lines start a hair higher above the floor of these rooms
 
 /// Walls and floors that run from the lit side to the dark, past what divides them.
@@ -314,7 +344,8 @@ INSTANTIATE_TEST_SUITE_P(
         Astride{"a_sheet_along_the_cells", [] { return room_with_sheet(4, 0); }},
         Astride{"a_sheet_within_cells", [] { return room_with_sheet(4.1F, 0); }},
         Astride{"a_leaning_sheet", [] { return room_with_sheet(3.8F, 0.6F); }},
-        Astride{"a_corner_of_screens", room_with_lit_corner},
+        Astride{"a_sheet_leaning_by_a_third", [] { return room_with_sheet(2.2F, 3); }},
+        Astride{"a_bumpy_wall", room_with_bumpy_wall}, Astride{"a_corner_of_screens", room_with_lit_corner},
         Astride{"a_folding_screen", room_with_folding_screen}),
     [](const auto& test) { return test.param.name; });
 
@@ -322,6 +353,29 @@ TEST_P(SurfacesAstride, CarryNoLightAcross) {
     expect_dark(GetParam().scene());
 }
 
+/// A sheet through a vault of small facets: the patch that a cut facet belongs to carries light over.
+DarkSide room_under_a_vault() {
+    World world = testing::empty_world(0.7F, Vec3(2, 3.8F, 3.8F));
+    Body& body = world.bodies[furniture];
+    add_box(body, Vec3(0), Vec3(8, 6, 4), 0, Facing::inwards);
+    add_quad(body, Vec3(5.5F, 4.98F, 1.5F), Vec3(1, 0, 0), Vec3(0, 0, 1), 1);
+    add_quad(body, Vec3(4.1F, 0, 0), Vec3(0, 6, 0), Vec3(0, 0, 4), 0);
+    const auto vault = [](float u, float v) {
+        return Vec3(-0.02F + 8.04F * u, 5 + 0.5F * std::sin(pi * v) + 0.05F * std::sin(12 * pi * u),
+                    -0.02F + 4.04F * v);
+    };
+    add_curved(world, vault, 80, 40);
+    add_walkers(world, Vec3(4, 0, 0));
+    return {std::move(world), [](const Vec3& p) { return p.x < 4.1F; }};
+}
+
+TEST(Leaks, AVaultAstrideAWallCarriesLittle) {
+    const DarkSide scene = room_under_a_vault();
+    SolvedWorld solved(scene.world, patches_of_40_cm(Visibility::back_buffer));
+    solved.solve(0.3);
+    const Sides sides = sides_of(solved, scene);
+    EXPECT_LT(sides.mean_dark, 0.01 * sides.mean_lit);
+}
 TEST(Leaks, LightGoesRoundAScreenThatEndsMidFloor) {
     World world = room_to_divide();
     add_screens(world, {{4.1F, 0}, {4.1F, 2.33F}});
