@@ -84,7 +84,8 @@ void add_get(CLI::App& app, Raw& raw) {
     app.add_option("--type", raw.type, "png, exr or both (the default)")
         ->transform(CLI::CheckedTransformer(types))
         ->type_name("");
-    app.add_option("--movie", raw.movie, "Make a movie of them, such as out.mp4 (needs ffmpeg)")->type_name("");
+    app.add_option("--movie", raw.movie, "Make a movie of them, such as out.mp4 (needs ffmpeg)")
+        ->type_name("");
 }
 
 CLI::App& add_command(CLI::App& app, Raw& raw, const std::string& name, const std::string& help) {
@@ -152,9 +153,11 @@ Command command_of(Raw& raw) {
 std::string read_token(const std::string& file) {
     std::string token = read_input(file);
     token.erase(token.find_last_not_of(" \t\r\n") + 1);
-    const bool is_one_word = std::all_of(token.begin(), token.end(), [](char c) { return c > ' ' && c < 127; });
+    const bool is_one_word =
+        std::all_of(token.begin(), token.end(), [](char c) { return c > ' ' && c < 127; });
     if (token.empty() || !is_one_word)
-        throw ClientError(ExitCode::bad_input, "--token-file " + file, "must hold one token and nothing else");
+        throw ClientError(ExitCode::bad_input, "--token-file " + file,
+                          "must hold one token and nothing else");
     return token;
 }
 

@@ -41,9 +41,8 @@ Reply get_file(const Request& request, std::string_view name) {
 void add_viewer_routes(Router& router) {
     router.add("GET", "/",
                [](const Request& request, const PathValues&) { return get_file(request, "index.html"); });
-    router.add("GET", "/viewer/{}", [](const Request& request, const PathValues& values) {
-        return get_file(request, values[0]);
-    });
+    router.add("GET", "/viewer/{}",
+               [](const Request& request, const PathValues& values) { return get_file(request, values[0]); });
 }
 
 }  // namespace afterglow
