@@ -24,7 +24,8 @@ std::uint64_t LinesAlone::extend(const SightLines& sight, const PatchMesh& mesh,
         caster.nearest(rays, b.body, hits);
         for (std::size_t lane = 0; lane < rays.count; ++lane) {
             lines_.patch[at + lane] = target_of(hits[lane], rays.ray(lane), mesh);
-            lines_.distance[at + lane] = hits[lane].distance;
+            // What touches the body there is hidden by it, however the distances of both are rounded.
+            lines_.distance[at + lane] = std::max(hits[lane].distance - sight.lift_m(), 0.0F);
         }
         traced += rays.count;
     }

@@ -26,6 +26,7 @@ class LinesAlone {
         return std::size_t{block.first - mesh.static_size()} * sight.different_lines(block) +
                std::size_t{direction} * block.count;
     }
+    /// What they meet; distances are short of it by a lift, so that what touches the body there is not seen.
     [[nodiscard]] const LineTargets& lines() const { return lines_; }
 
   private:
