@@ -40,7 +40,12 @@ const player = make_player(
   show_problem,
 );
 const panel = make_job_panel({ facts: element("facts"), controls: element("controls"), on_problem: show_problem });
-const chart = await make_chart(element("chart"), (frame) => player.choose(frame));
+// Nothing waits for the chart's library: a form that nobody listens to yet would be sent the browser's way.
+let chart = null;
+make_chart(element("chart"), (frame) => player.choose(frame)).then((made) => {
+  chart = made;
+  if (view) show_soon();
+});
 
 // Events come faster than a screen is drawn: what they changed is shown once a screen.
 let is_due = false;
@@ -52,7 +57,7 @@ function show_soon() {
     player.show(view);
     strip.show(view, player.frame());
     panel.show(view.job);
-    chart.show(view.points);
+    chart?.show(view.points);
   });
 }
 

@@ -10,7 +10,8 @@ namespace afterglow {
 
 namespace {
 
-// Nothing but what this server sends may run or be loaded, whatever the name of a job or a scene holds.
+// Nothing but what this server sends may run or be loaded, whatever the name of a job or a scene holds. The
+// server's own policy for data allows nothing at all.
 constexpr auto content_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -22,11 +23,8 @@ Reply get_file(const Request& request, std::string_view name) {
 
     const std::string tag = '"' + std::to_string(std::hash<std::string_view>{}(found->bytes)) + '"';
     Reply reply;
-    reply.headers = {{"Content-Security-Policy", content_policy},
-                     {"X-Content-Type-Options", "nosniff"},
-                     {"Referrer-Policy", "no-referrer"},
-                     {"Cache-Control", "no-cache"},
-                     {"ETag", tag}};
+    reply.headers = {
+        {"Content-Security-Policy", content_policy}, {"Cache-Control", "no-cache"}, {"ETag", tag}};
     if (request.header("if-none-match") == tag) {
         reply.status = 304;
         return reply;

@@ -135,6 +135,24 @@ test("a click on the error's curve goes to the frame of the nearest point", asyn
   await until(() => document.querySelector("#strip").getAttribute("aria-valuenow") === "5");
 });
 
+test("a page finds its way back when the service has crashed and started again", async () => {
+  await submit("0-48", "preview");
+  await until(() => [...document.querySelectorAll("#jobs button")].some((b) => b.textContent.includes("of 49 frames")));
+  await until(() => document.querySelector("#strip").getAttribute("aria-valuemax") === "48");
+  await page.focus("#strip");
+  await page.keyboard.press("Home");
+  await until(() => document.querySelector("#strip").getAttribute("aria-valuetext").includes("converged"));
+  await stop("SIGKILL");
+  await until_connection_says("trying again");
+  await shot("lost");
+  await serve(Number(new URL(address).port));
+  await until_connection_says("ended");
+  assert.equal(await text("#facts dd:first-of-type"), "succeeded");
+  await page.focus("#strip");
+  await page.keyboard.press("End");
+  assert.match(await page.getAttribute("#strip", "aria-valuetext"), /^frame 48, converged/);
+});
+
 test("what the service refuses is said in words", async () => {
   await submit("7-3");
   await page.waitForSelector("#message:not([hidden])");
