@@ -40,6 +40,13 @@ int run_ffmpeg(std::vector<std::string> arguments, Voice voice) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+/// What ffmpeg reads the frames by; a percent sign of the folder's name stands for itself.
+std::string pattern_of(const std::filesystem::path& folder) {
+    std::string pattern;
+    for (const char c : folder.string()) pattern += c == '%' ? std::string("%%") : std::string(1, c);
+    return pattern + "/frame_%04d.png";
+}
+
 }  // namespace
 
 MovieMaker find_movie_maker() {
@@ -49,13 +56,20 @@ MovieMaker find_movie_maker() {
 void make_movie(const MovieFrames& frames, const std::filesystem::path& file) {
     if (find_movie_maker() == MovieMaker::missing)
         throw ClientError(ExitCode::local_failure, "--movie", "needs ffmpeg, which is not there");
-    const int status = run_ffmpeg(
-        {"-v", "error", "-y", "-framerate", std::to_string(frames.frames_per_second), "-start_number",
-         std::to_string(frames.first_frame), "-i", (frames.folder / "frame_%04d.png").string(),
-         // Most players want this pixel format, and it wants even sizes.
-         "-pix_fmt", "yuv420p", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", file.string()},
-        Voice::heard);
-    if (status != 0) throw ClientError(ExitCode::local_failure, file.string(), "ffmpeg could not make it");
+    // Written beside its place first, so that a failure leaves an older one as it was.
+    auto part = file.parent_path().empty() ? std::filesystem::path(".") : file.parent_path();
+    part /= file.stem().string() + ".part" + file.extension().string();
+    const int status =
+        run_ffmpeg({"-v", "error", "-y", "-framerate", std::to_string(frames.frames_per_second),
+                    "-start_number", std::to_string(frames.first_frame), "-i", pattern_of(frames.folder),
+                    // Most players want this pixel format, and it wants even sizes.
+                    "-pix_fmt", "yuv420p", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", part.string()},
+                   Voice::heard);
+    std::error_code failure;
+    if (status == 0) std::filesystem::rename(part, file, failure);
+    if (status == 0 && !failure) return;
+    std::filesystem::remove(part, failure);
+    throw ClientError(ExitCode::local_failure, file.string(), "ffmpeg could not make it");
 }
 
 }  // namespace afterglow::client

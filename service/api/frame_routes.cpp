@@ -3,6 +3,7 @@
 #include "service/api/routes.h"
 #include "service/base/frame_range.h"
 #include "service/base/option_values.h"
+#include "solver/base/hash.h"
 
 namespace afterglow {
 
@@ -96,12 +97,16 @@ Reply get_image(const RouteContext& context, const Request& request, const PathV
     if (!bytes) throw ProblemError({410, "gone", "this revision is kept no longer", "request?rev"});
 
     const std::string name = type == PictureType::png ? "png" : "exr";
-    const std::string tag =
-        "\"" + job.id + "-" + values[1] + "-" + std::to_string(revision) + "-" + name + "\"";
+    // A frame that is begun again, after a pause or a crash, counts its revisions from 1 again.
+    Hasher content;
+    content.add_bytes(bytes->data(), bytes->size());
+    const std::string tag = "\"" + content.result().hex() + "-" + name + "\"";
+    const auto shown = context.frames.newest(job.id, frame);
+    const bool is_final = shown && shown->final && shown->revision == revision;
     Reply reply;
     reply.headers.emplace_back("ETag", tag);
-    reply.headers.emplace_back("Cache-Control",
-                               asked.empty() ? "no-cache" : "public, max-age=31536000, immutable");
+    reply.headers.emplace_back(
+        "Cache-Control", asked.empty() || !is_final ? "no-cache" : "public, max-age=31536000, immutable");
     if (request.header("if-none-match").find(tag) != std::string::npos) {
         reply.status = 304;
         return reply;

@@ -135,7 +135,7 @@ Reply get_job(const RouteContext& context, const Request& request, const std::st
     if (const std::string text = request.parameter("wait"); !text.empty()) {
         const auto give_up = std::chrono::steady_clock::now() +
                              std::chrono::seconds(whole_number("request?wait", text, 0, 60));
-        const auto log = context.jobs.events(id);
+        const auto log = events_at(context.jobs, id);
         auto reached = log->last_id();
         while (!has_ended(job_at(context.jobs, id).state)) {
             const auto left =
@@ -197,6 +197,11 @@ Job own_job_at(const JobStore& jobs, const Request& request, const std::string& 
 
 Job job_at(const JobStore& jobs, const std::string& id) {
     if (auto job = jobs.find(id)) return *std::move(job);
+    throw ProblemError({404, "not_found", "there is no such job", id});
+}
+
+std::shared_ptr<const EventLog> events_at(const JobStore& jobs, const std::string& id) {
+    if (auto log = jobs.events(id)) return log;
     throw ProblemError({404, "not_found", "there is no such job", id});
 }
 

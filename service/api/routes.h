@@ -28,6 +28,9 @@ void add_frame_routes(Router& router, const RouteContext& context);
 void add_stream_routes(Router& router, const RouteContext& context);
 void add_status_routes(Router& router, const RouteContext& context, Database& database);
 
+/// The events of an address's job, or a 404 that names it. A job may be removed at any time.
+std::shared_ptr<const EventLog> events_at(const JobStore& jobs, const std::string& id);
+
 /// The job of an address, or a 404 that names it.
 Job job_at(const JobStore& jobs, const std::string& id);
 

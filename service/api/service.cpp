@@ -41,8 +41,9 @@ Service::Service(const ServiceConfig& config, ServiceParts parts)
       jobs_({{}, JobStoreConfig{}.progress_interval, first_event_of(database_)}, &job_table_,
             durable_frames(database_)),
       journal_(database_,
-               [this](const std::string& job, const std::exception_ptr& failure) {
-                   jobs_.end(job, JobState::failed, problem_of(failure));
+               [this](const FrameJournal::Entry& entry, const std::exception_ptr& failure) {
+                   jobs_.forget_picture(entry.job, entry.info.frame);
+                   jobs_.end(entry.job, JobState::failed, problem_of(failure));
                }),
       scenes_(config.data_folder / "uploads", std::move(parts.read_scene), &database_),
       frames_(config.data_folder / "jobs", &journal_),

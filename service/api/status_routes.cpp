@@ -10,7 +10,7 @@ namespace {
 /// Whether work can be taken: the database answers and can be written.
 Reply get_ready(Database& database) {
     try {
-        database.change("UPDATE openings SET number = number");
+        database.change("UPDATE probe SET number = number + 1");
     } catch (const Error&) {
         Problem problem = problem_of(std::current_exception());
         problem.status = 503;

@@ -35,7 +35,7 @@ std::string snapshot_text(const RouteContext& context, const std::string& id, st
 
 Reply get_events(const RouteContext& context, const Request& request, const std::string& id) {
     job_at(context.jobs, id);
-    const auto log = context.jobs.events(id);
+    const auto log = events_at(context.jobs, id);
     const auto reached = last_event_id(request);
     std::uint64_t after = 0;
     std::string opening = ": events\n\n";  // lets the reader know at once that it is connected
@@ -63,7 +63,7 @@ Reply get_live(const RouteContext& context, const Request& request, const std::s
     reply.content_type = live_content_type;
     reply.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
     reply.stream = context.usage.counted(
-        request.client, std::make_shared<LiveStream>(id, context.jobs.events(id), context.frames));
+        request.client, std::make_shared<LiveStream>(id, events_at(context.jobs, id), context.frames));
     return reply;
 }
 

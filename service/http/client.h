@@ -17,18 +17,16 @@ struct Quota {
     std::int64_t jobs = unlimited;       ///< that have not ended
     std::int64_t bytes = unlimited;      ///< uploaded since the service started
     std::int64_t triangles = unlimited;  ///< of a scene
-    std::int64_t patches = unlimited;    ///< of a job; it fails where it comes to have more
     std::int64_t frames = unlimited;     ///< of a job
     std::int64_t pixels = unlimited;     ///< of a picture
     std::int64_t streams = unlimited;    ///< open
 };
 
 /// Their names in token files and problems.
-inline constexpr std::array<std::pair<const char*, std::int64_t Quota::*>, 7> quota_fields{
+inline constexpr std::array<std::pair<const char*, std::int64_t Quota::*>, 6> quota_fields{
     {{"jobs", &Quota::jobs},
      {"bytes", &Quota::bytes},
      {"triangles", &Quota::triangles},
-     {"patches", &Quota::patches},
      {"frames", &Quota::frames},
      {"pixels", &Quota::pixels},
      {"streams", &Quota::streams}}};

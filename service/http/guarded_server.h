@@ -41,7 +41,6 @@ class GuardedServer : public httplib::Server {
     /// Waits until all connections have ended; shuts them down after `grace`, and after another `grace`
     /// leaves those that still sleep to end by themselves: true where there are none.
     bool end_connections(std::chrono::milliseconds grace);
-    [[nodiscard]] std::size_t connections() const { return threads_.active(); }
 
   private:
     class Threads;

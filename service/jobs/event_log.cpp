@@ -50,6 +50,8 @@ void EventLog::close() {
 void EventLog::reopen() {
     const std::lock_guard lock(mutex_);
     closed_ = false;
+    // It is no longer the last one.
+    std::erase_if(events_, [](const auto& known) { return known.second.kind == EventKind::end; });
 }
 
 /// Notes what the event `id` makes superfluous.

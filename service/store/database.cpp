@@ -22,6 +22,9 @@ constexpr std::array migrations = {
     "CREATE TABLE frames (job TEXT NOT NULL, frame INTEGER NOT NULL, revision INTEGER NOT NULL, residual "
     "REAL,"
     " error_bound REAL, picture_error REAL, seconds REAL, PRIMARY KEY (job, frame)) WITHOUT ROWID;",
+    // For a change that can always be made, to see whether any can.
+    "CREATE TABLE probe (number INTEGER NOT NULL);"
+    "INSERT INTO probe VALUES (0);",
 };
 
 constexpr int busy_ms = 5000;

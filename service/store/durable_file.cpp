@@ -72,8 +72,4 @@ void make_durable(const std::vector<std::filesystem::path>& files) {
     for (const auto& folder : folders) sync(folder, O_RDONLY | O_DIRECTORY);
 }
 
-bool is_unfinished(const std::filesystem::path& path) {
-    return path.extension() == unfinished_mark;
-}
-
 }  // namespace afterglow

@@ -15,7 +15,4 @@ void put_file(const std::filesystem::path& path, std::string_view content);
 /// folder once). Errors: StorageError. Files that are gone are left out.
 void make_durable(const std::vector<std::filesystem::path>& files);
 
-/// True for a name that `put_file` was interrupted at.
-bool is_unfinished(const std::filesystem::path& path);
-
 }  // namespace afterglow

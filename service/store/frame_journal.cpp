@@ -1,6 +1,5 @@
 #include "service/store/frame_journal.h"
 
-#include <set>
 #include <utility>
 
 #include "service/store/durable_file.h"
@@ -84,9 +83,7 @@ void FrameJournal::commit(const std::vector<Entry>& group) {
                                   cell_of(info.error_bound), cell_of(info.picture_error), info.seconds});
         });
     } catch (...) {
-        std::set<std::string> jobs;
-        for (const Entry& entry : group) jobs.insert(entry.job);
-        for (const std::string& job : jobs) on_failure_(job, std::current_exception());
+        for (const Entry& entry : group) on_failure_(entry, std::current_exception());
     }
 }
 

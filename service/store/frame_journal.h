@@ -28,8 +28,8 @@ class FrameJournal {
         FrameInfo info;
         std::vector<std::filesystem::path> files;
     };
-    /// Told from the journal's thread for each job of a group that could not be made durable.
-    using OnFailure = std::function<void(const std::string& job, std::exception_ptr failure)>;
+    /// Told from the journal's thread for each picture of a group that could not be made durable.
+    using OnFailure = std::function<void(const Entry& entry, std::exception_ptr failure)>;
 
     /// `longest`: how long an entry waits for others.
     FrameJournal(Database& database, OnFailure on_failure,

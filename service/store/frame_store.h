@@ -21,8 +21,8 @@ struct EncodedPicture {
 };
 
 /// Pictures by job, frame and revision, as files in the data folder: JOB/frame_0007.2.png. A stored revision
-/// never changes. When a frame's final picture is stored its preliminary ones are removed. Thread-safety: all
-/// members; one writer a job.
+/// never changes while its frame is being computed. When a frame's final picture is stored its preliminary
+/// ones are removed. Thread-safety: all members; one writer a job.
 class FrameStore {
   public:
     /// Makes the folder. With a journal, final pictures become durable and those it knows are there; files

@@ -67,6 +67,12 @@ void JobStore::save(const Job& job) const {
     if (table_ != nullptr) table_->update(job);
 }
 
+/// Changes a job on disk first: where that fails nothing has changed.
+void JobStore::take_over(Record& record, Job job) const {
+    save(job);
+    record.job = std::move(job);
+}
+
 /// An end holds even where the disk no longer takes it: after a restart the job then goes on.
 void JobStore::save_or_tell(const Job& job) const {
     try {
@@ -149,9 +155,10 @@ bool JobStore::start(const std::string& id) {
     const std::lock_guard lock(mutex_);
     Record* record = active(id);
     if (record == nullptr || !may_follow(record->job.state, JobState::running)) return false;
-    record->job.state = JobState::running;
-    if (!record->job.started) record->job.started = now();
-    save(record->job);
+    Job job = record->job;
+    job.state = JobState::running;
+    if (!job.started) job.started = now();
+    take_over(*record, std::move(job));
     record->events->append(EventKind::job, dump(to_json(record->job)));
     return true;
 }
@@ -162,10 +169,11 @@ bool JobStore::pause(const std::string& id) {
         const std::lock_guard lock(mutex_);
         Record* record = active(id);
         if (record == nullptr || !may_follow(record->job.state, JobState::paused)) return false;
-        record->job.state = JobState::paused;
-        record->job.doing.clear();
-        record->job.remaining.reset();
-        save(record->job);
+        Job job = record->job;
+        job.state = JobState::paused;
+        job.doing.clear();
+        job.remaining.reset();
+        take_over(*record, std::move(job));
         record->events->append(EventKind::job, dump(to_json(record->job)));
         stop = record->stop;
     }
@@ -178,15 +186,15 @@ bool JobStore::requeue(const std::string& id) {
     const auto it = records_.find(id);
     if (it == records_.end() || !may_follow(it->second.job.state, JobState::queued)) return false;
     Record& record = it->second;
-    Job& job = record.job;
+    Job job = record.job;
     job.state = JobState::queued;
     job.ended.reset();
     job.error.reset();
     job.progress = static_cast<double>(job.frames_done) / job.frame_count();
-    save(job);
+    take_over(record, std::move(job));
     record.stop = std::stop_source();
     record.events->reopen();
-    record.events->append(EventKind::job, dump(to_json(job)));
+    record.events->append(EventKind::job, dump(to_json(record.job)));
     return true;
 }
 
@@ -285,6 +293,23 @@ void JobStore::note_picture(const std::string& id, const FrameInfo& info) {
     }
     record->events->append(info.final ? EventKind::final_image : EventKind::image, dump(image_json(id, info)),
                            info.frame);
+}
+
+void JobStore::forget_picture(const std::string& id, int frame) {
+    const std::lock_guard lock(mutex_);
+    const auto it = records_.find(id);
+    if (it == records_.end()) return;
+    it->second.final_frames.erase(frame);
+    it->second.job.frames_done = static_cast<int>(it->second.final_frames.size());
+}
+
+int JobStore::first_unfinished(const std::string& id) const {
+    const std::lock_guard lock(mutex_);
+    const auto it = records_.find(id);
+    if (it == records_.end()) return 0;
+    int frame = it->second.job.frames.first;
+    while (it->second.final_frames.contains(frame)) ++frame;
+    return frame;
 }
 
 }  // namespace afterglow

@@ -69,6 +69,10 @@ class JobStore {
     void note_warnings(const std::string& id, const Warnings& warnings);
     /// A picture can now be fetched.
     void note_picture(const std::string& id, const FrameInfo& info);
+    /// A final picture that was told of could not be kept: its frame counts as unfinished again.
+    void forget_picture(const std::string& id, int frame);
+    /// The first frame of a job that is not finished; one past its last where all are.
+    [[nodiscard]] int first_unfinished(const std::string& id) const;
 
   private:
     struct Record {
@@ -82,6 +86,7 @@ class JobStore {
     void restore(const Job& job, const std::vector<FrameInfo>& frames);
     [[nodiscard]] const Job* with_key(const Job& draft) const;
     void save(const Job& job) const;
+    void take_over(Record& record, Job job) const;
     void save_or_tell(const Job& job) const;
 
     JobStoreConfig config_;

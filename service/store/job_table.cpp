@@ -5,6 +5,10 @@
 
 namespace afterglow {
 
+JobTable::JobTable(Database& database) : database_(database) {
+    database_.change("DELETE FROM frames WHERE job NOT IN (SELECT id FROM jobs)");
+}
+
 std::vector<Job> JobTable::load() {
     std::vector<Job> jobs;
     for (const Row& row : database_.ask("SELECT body FROM jobs ORDER BY number"))

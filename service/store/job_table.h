@@ -12,7 +12,8 @@ namespace afterglow {
 /// members.
 class JobTable {
   public:
-    explicit JobTable(Database& database) : database_(database) {}
+    /// Forgets pictures that were finished while their job was being removed.
+    explicit JobTable(Database& database);
 
     /// In the order they were added.
     std::vector<Job> load();

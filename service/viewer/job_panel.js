@@ -24,13 +24,14 @@ export function facts_of(job) {
   return facts;
 }
 
-export function make_job_panel({ facts, controls, on_problem }) {
+/** `on_step(id)` hears that a step was taken: a job that had ended goes on after `retry`. */
+export function make_job_panel({ facts, controls, on_step, on_problem }) {
   let shown = "";
 
   const button = (job, step) => {
     const element = document.createElement("button");
     element.textContent = step;
-    element.addEventListener("click", () => post_json(`/v1/jobs/${job.id}/${step}`).then(() => on_problem(null), on_problem));
+    element.addEventListener("click", () => post_json(`/v1/jobs/${job.id}/${step}`).then(() => (on_problem(null), on_step(job.id)), on_problem));
     return element;
   };
 

@@ -1,7 +1,6 @@
 // What the page knows of one job, and how events change it. No page, no network: plain values.
 
-/** A frame is `queued` without a picture, `coarse` with a preliminary one, `converged` with a final one, and `stale` when its
- *  final picture shows a scene that has been edited since. */
+/** A frame is `queued` without a picture, `coarse` with a preliminary one, `converged` with a final one. */
 export function make_job_view(job) {
   const view = { job, first: job.first_frame, last: job.last_frame, frames: new Map(), points: [], began: null };
   for (const frame of job.frames ?? []) take_picture(view, { ...frame, url: frame.png });
@@ -30,16 +29,11 @@ export function take_event(view, name, data, now_s) {
     const error = data.error_bound ?? data.residual;
     if (error > 0) view.points.push({ time_s: now_s - view.began, frame: data.frame, error, final: data.final });
   }
-  if (name === "edit") mark_stale(view, data.first_frame ?? view.first);
   return view;
 }
 
 function take_picture(view, picture) {
   view.frames.set(picture.frame, { ...picture, state: picture.final ? "converged" : "coarse" });
-}
-
-function mark_stale(view, from) {
-  for (const frame of view.frames.values()) if (frame.frame >= from && frame.final) frame.state = "stale";
 }
 
 /** In words, for people who listen to the page. */

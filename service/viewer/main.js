@@ -39,7 +39,7 @@ const player = make_player(
   (frame) => strip.show(view, frame),
   show_problem,
 );
-const panel = make_job_panel({ facts: element("facts"), controls: element("controls"), on_problem: show_problem });
+const panel = make_job_panel({ facts: element("facts"), controls: element("controls"), on_step: choose_job, on_problem: show_problem });
 // Nothing waits for the chart's library: a form that nobody listens to yet would be sent the browser's way.
 let chart = null;
 make_chart(element("chart"), (frame) => player.choose(frame)).then((made) => {

@@ -8,7 +8,9 @@ export function make_pictures() {
   const bitmaps = new Map();  // url → promise of a bitmap, the least recently used first
 
   return {
-    get(url) {
+    /** `is_final`: a frame that is begun again counts its revisions anew, so a preliminary picture may have had the address. */
+    get(address, is_final) {
+      const url = is_final ? `${address}#final` : address;
       const known = bitmaps.get(url);
       bitmaps.delete(url);
       const picture = known ?? get_picture(url);

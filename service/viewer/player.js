@@ -21,15 +21,15 @@ export function make_player(elements, on_frame, on_problem) {
   let timer = null;
   let drawing = null;  // what is being drawn, and whether it must be drawn again after that
 
-  const url = (v, f) => v?.frames.get(f)?.url;
+  const known = (v, f) => v?.frames.get(f);
 
   const draw_now = async () => {
     const mode = elements.compare.value;
-    const a = url(view, frame);
+    const a = known(view, frame);
     if (!a) return;
     const against = elements.other_frame.value === "" ? frame : Number(elements.other_frame.value);
-    const b = mode === "none" ? null : url(other ?? view, against);
-    const [picture, second] = await Promise.all([pictures.get(a), b ? pictures.get(b) : null]);
+    const b = mode === "none" ? null : known(other ?? view, against);
+    const [picture, second] = await Promise.all([a, b].map((p) => p && pictures.get(p.url, p.final)));
     draw(elements.canvas, { a: picture, b: second, mode, share: elements.wipe.value / 100 });
     elements.canvas.setAttribute("aria-label", describe(view, frame) + (second ? `, ${mode} with frame ${against}` : ""));
   };

@@ -3,7 +3,7 @@
 
 import { describe, state_of } from "./job_view.js";
 
-const order = ["stale", "queued", "coarse", "converged"];
+const order = ["queued", "coarse", "converged"];
 
 /** Draws on `canvas` and calls `on_choose(frame)` when the user picks one by pointer or keys. */
 export function make_strip(canvas, on_choose) {

@@ -122,15 +122,14 @@ void Worker::leave(const std::string& id) {
     if (!submitted_.contains(id)) schedule_.remove(id);
 }
 
-/// Frames are finished in order, so their number says where to go on after a pause or a restart, once those
-/// that wait to be stored have been.
+/// Where to go on after a pause, a failure or a restart, once frames that wait to be stored have been. Those
+/// finished behind a missing one are computed again.
 int Worker::first_frame_of(const Job& job) {
     if (!job.started) return job.frames.first;
     std::promise<void> stored;
     encoder_.after_pictures([&] { stored.set_value(); });
     stored.get_future().wait();
-    const auto now = jobs_.find(job.id);
-    return job.frames.first + (now ? now->frames_done : 0);
+    return jobs_.first_unfinished(job.id);
 }
 
 /// Computes the job's next frame; a job that is through is no longer in `running_`.

@@ -17,15 +17,6 @@ test("frames go from queued to coarse to converged", () => {
   assert.equal(describe(view, 4), "frame 4, converged, within 2.0 %");
 });
 
-test("an edit makes finished frames from its own on stale, and a new picture makes them fresh", () => {
-  let view = make_job_view(job);
-  for (const frame of [3, 4, 5]) view = take_event(view, "image", image(frame, true), 1);
-  view = take_event(view, "edit", { first_frame: 4 }, 2);
-  assert.deepEqual([3, 4, 5, 6].map((f) => state_of(view, f)), ["converged", "stale", "stale", "queued"]);
-  view = take_event(view, "image", image(4, true), 3);
-  assert.equal(state_of(view, 4), "converged");
-});
-
 test("a snapshot replaces what is known of frames and keeps the curve", () => {
   let view = take_event(make_job_view(job), "image", image(4, false), 10);
   view = take_event(view, "image", image(5, false), 12);

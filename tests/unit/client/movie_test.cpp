@@ -26,11 +26,12 @@ class Movie : public testing::Test {
     }
     void TearDown() override { setenv("PATH", path_.c_str(), 1); }
 
-    /// An ffmpeg that notes its arguments and ends so.
+    /// An ffmpeg that notes its arguments, writes its last one and ends so.
     void install(int status) {
         const auto file = folder_ / "ffmpeg";
         std::ofstream(file) << "#!/bin/sh\necho \"$@\" >" << (folder_ / "said").string()
-                            << "\n[ \"$1\" = -version ] || exit " << status << '\n';
+                            << "\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\n: >\"$last\"\nexit "
+                            << status << '\n';
         chmod(file.c_str(), 0755);
     }
     std::string said() {
@@ -46,10 +47,11 @@ class Movie : public testing::Test {
 TEST_F(Movie, IsMadeOfTheFramesFromTheFirstOn) {
     install(0);
     EXPECT_EQ(find_movie_maker(), MovieMaker::present);
-    make_movie({"frames", 12, 12.5}, "out.mp4");
+    make_movie({"100% frames", 12, 12.5}, folder_ / "out.mp4");
     EXPECT_THAT(said(), HasSubstr("-framerate 12.5"));
-    EXPECT_THAT(said(), HasSubstr("-start_number 12 -i frames/frame_%04d.png"));
-    EXPECT_THAT(said(), HasSubstr("out.mp4"));
+    EXPECT_THAT(said(), HasSubstr("-start_number 12 -i 100%% frames/frame_%04d.png"));
+    EXPECT_TRUE(fs::exists(folder_ / "out.mp4"));
+    EXPECT_FALSE(fs::exists(folder_ / "out.part.mp4"));
 }
 
 TEST_F(Movie, NeedsFfmpeg) {
@@ -63,9 +65,12 @@ TEST_F(Movie, NeedsFfmpeg) {
     }
 }
 
-TEST_F(Movie, SaysThatItCouldNotBeMade) {
+TEST_F(Movie, AFailureLeavesAnOlderOneAsItWas) {
     install(1);
-    EXPECT_THROW(make_movie({}, "out.mp4"), ClientError);
+    std::ofstream(folder_ / "out.mp4") << "older";
+    EXPECT_THROW(make_movie({}, folder_ / "out.mp4"), ClientError);
+    EXPECT_EQ(fs::file_size(folder_ / "out.mp4"), 5U);
+    EXPECT_FALSE(fs::exists(folder_ / "out.part.mp4"));
 }
 
 }  // namespace

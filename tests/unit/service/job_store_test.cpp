@@ -47,6 +47,27 @@ TEST(JobStore, TellsALifeInOrder) {
     EXPECT_EQ(events[5].data, R"({"state":"succeeded"})");
 }
 
+TEST(JobStore, GoesOnAtTheFirstFrameThatIsMissing) {
+    JobStore jobs;
+    const std::string id = jobs.add(draft(5)).id;
+    EXPECT_TRUE(jobs.start(id));
+    EXPECT_EQ(jobs.first_unfinished(id), 0);
+    for (const int frame : {0, 1, 3}) jobs.note_picture(id, {frame, 1, true, 0, {}});
+    EXPECT_EQ(jobs.first_unfinished(id), 2);
+    // A full disk, say, did not take one that was told of.
+    jobs.forget_picture(id, 1);
+    EXPECT_EQ(jobs.first_unfinished(id), 1);
+    EXPECT_EQ(jobs.find(id)->frames_done, 2);
+}
+
+TEST(JobStore, AfterAnotherTryTheOldEndIsNotTold) {
+    JobStore jobs;
+    const std::string id = jobs.add(draft()).id;
+    EXPECT_TRUE(jobs.end(id, JobState::cancelled));
+    EXPECT_TRUE(jobs.requeue(id));
+    EXPECT_THAT(names_of(events_of(jobs, id)), testing::ElementsAre("job", "job", "job"));
+}
+
 TEST(JobStore, AnEndedJobNeverChanges) {
     JobStore jobs;
     const std::string id = jobs.add(draft()).id;
