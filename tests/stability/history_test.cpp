@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <ostream>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -117,9 +116,6 @@ void expect_history_does_not_matter(const World& world, const SequenceConfig& co
 }
 
 class History : public ::testing::TestWithParam<Method> {};
-void PrintTo(const Method& method, std::ostream* out) {
-    *out << method.name;
-}
 
 /// On through consecutive frames, jumps, and back.
 void expect_on_sample_scene(const char* file, const Method& method, double patch_size_m) {
