@@ -27,7 +27,8 @@ std::chrono::duration<double> process_age() {
     timespec now{};
     clock_gettime(CLOCK_BOOTTIME, &now);
     const double since_boot = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-    const double began = ticks_since_boot / static_cast<double>(sysconf(_SC_CLK_TCK));
+    // Somewhere within that tick: from its end on, so that no time is counted that was not ours.
+    const double began = (ticks_since_boot + 1) / static_cast<double>(sysconf(_SC_CLK_TCK));
     return Seconds(std::max(0.0, since_boot - began));
 }
 

@@ -4,8 +4,8 @@
 
 namespace afterglow {
 
-/// Wall time since the system made this process, to its clock tick (10 ms): unlike any clock of the program's
-/// own it covers loading the shared libraries. 0 where /proc cannot be read. Thread-safe.
+/// Wall time since the system made this process, up to a clock tick (10 ms) too little: unlike any clock of
+/// the program's own it covers loading the shared libraries. 0 where /proc cannot be read. Thread-safe.
 std::chrono::duration<double> process_age();
 
 }  // namespace afterglow
