@@ -28,6 +28,10 @@ inline DoubleLanes to_double(const Lanes& lanes) {
     return {__builtin_convertvector(lanes.v, DoubleLanes::Vector)};
 }
 
+inline Lanes to_single(const DoubleLanes& lanes) {
+    return {__builtin_convertvector(lanes.v, Lanes::Vector)};
+}
+
 inline Lanes to_lanes(const Rgb& c) {
     return {Lanes::Vector{c.r, c.g, c.b, 0.0F}};
 }

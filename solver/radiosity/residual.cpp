@@ -18,6 +18,8 @@ constexpr std::size_t rows_per_chunk = 512;
 // Rounds go on to this share of what is good enough, so that the exact survey after them is seldom the last
 // but one.
 constexpr double near_enough = 0.8;
+// Rounds between two surveys that leave more than this share of the largest residual are too many.
+constexpr double little_progress = 0.7;
 // What the first solution is asked for, relative to what is asked: how far others' light may dim before what
 // it leaves is too much.
 constexpr double first_share = 0.5;
@@ -48,7 +50,11 @@ class Pusher {
         double largest = survey.largest;
         // What is covered will want a little more.
         const double enough = near_enough * survey.enough;
-        for (int round = 0; round < config.rounds_between_surveys && largest > enough; ++round) {
+        ResidualState::Progress& progress = state_.progress;
+        progress.largest_before = survey.largest;
+        progress.rounds_made = 0;
+        const int most = std::min(config.rounds_between_surveys, progress.rounds_allowed);
+        for (int round = 0; round < most && largest > enough; ++round) {
             const std::vector<Index> patches =
                 choose(std::max(config.push_share * largest, config.least_share * survey.enough));
             const bool sweeps =
@@ -59,6 +65,7 @@ class Pusher {
             if (sweeps) return sweep(context);
             if (!push_along_columns(patches)) break;
             moved = true;
+            ++progress.rounds_made;
             largest = surveyor_.look_again(context);
         }
         settle(context);
@@ -85,15 +92,15 @@ class Pusher {
     }
 
     /// B takes up its residual; returns by how much it changed.
-    Lanes take_up(std::size_t i) {
+    DoubleLanes take_up(std::size_t i) {
         const Lanes before = state_.radiosity[i];
         const Lanes after{before.v + surveyor_.residual(i).v};
-        const Lanes change{after.v - before.v};
+        const DoubleLanes change{to_double(after).v - to_double(before).v};
         // The fourth lane moves only where light does: nobody hears of it otherwise.
-        if (!is_any(to_double(change))) return {};
+        if (!is_any(change)) return {};
         state_.radiosity[i] = after;
         work_.change[i].v += change.v;
-        work_.residual[i].v -= change.v;
+        work_.residual[i].v -= to_single(change).v;
         ++state_.pushes;
         return change;
     }
@@ -107,27 +114,28 @@ class Pusher {
             gather_all(state_, problem_, context);
         else
             gather_reached(state_, problem_, work_.change, context);
-        std::fill(work_.change.begin(), work_.change.end(), Lanes{});
+        std::fill(work_.change.begin(), work_.change.end(), DoubleLanes{});
         gather_whole(state_, problem_, context);
         return state_.pushes > before;
     }
 
     bool push_along_columns(std::span<const Index> patches) {
         const std::uint64_t before = state_.pushes;
-        Lanes* const by_sight = work_.by_sight.data();
-        Lanes* const by_light = work_.by_light.data();
+        DoubleLanes* const by_sight = work_.by_sight.data();
+        DoubleLanes* const by_light = work_.by_light.data();
         const auto& of_lamps = problem_.matrix.light_columns;
         for (const Index i : patches) {
-            const Lanes change = take_up(i);
+            const DoubleLanes change = take_up(i);
             work_.is_pushed[i] = 1;
             state_.entries += problem_.matrix.sight_columns.column_begin[i + 1] -
                               problem_.matrix.sight_columns.column_begin[i] + of_lamps.column_begin[i + 1] -
                               of_lamps.column_begin[i];
             for_column(problem_.matrix.sight_columns, i,
-                       [&](Index row, float lines) { by_sight[row].v += lines * change.v; });
+                       [&](Index row, float lines) { add_light(by_sight[row], lines, change.v); });
             if (of_lamps.column_begin[i] == of_lamps.column_begin[i + 1]) continue;
             surveyor_.expect_from_lamps();
-            for_column(of_lamps, i, [&](Index row, float value) { by_light[row].v += value * change.v; });
+            for_column(of_lamps, i,
+                       [&](Index row, float value) { add_light(by_light[row], value, change.v); });
         }
         return state_.pushes > before;
     }
@@ -138,7 +146,7 @@ class Pusher {
         context.for_chunks(blocks, rows_per_chunk / block_size, [&](std::size_t first, std::size_t last) {
             for (std::size_t b = first; b < last; ++b) settle_block(b);
         });
-        std::fill(work_.change.begin(), work_.change.end(), Lanes{});
+        std::fill(work_.change.begin(), work_.change.end(), DoubleLanes{});
         std::fill(work_.is_pushed.begin(), work_.is_pushed.end(), std::uint8_t{0});
         gather_whole(state_, problem_, context);
     }
@@ -149,26 +157,37 @@ class Pusher {
         const std::size_t end = std::min(begin + block_size, problem_.matrix.rows());
         BlockSums sight, light{};
         for (std::size_t row = begin; row < end; ++row)
-            sight[row - begin] = to_double(std::exchange(work_.by_sight[row], {}));
+            sight[row - begin] = std::exchange(work_.by_sight[row], {});
         cover(problem_.matrix.sight, block, sight);
         // Lamps hardly reflect: mostly nothing has come from them.
         if (surveyor_.expects_from_lamps()) {
             for (std::size_t row = begin; row < end; ++row)
-                light[row - begin] = to_double(std::exchange(work_.by_light[row], {}));
+                light[row - begin] = std::exchange(work_.by_light[row], {});
             cover(problem_.matrix.light, block, light);
         }
         for (std::size_t row = begin; row < end; ++row)
             add_to_row(state_, problem_, row, sight[row - begin], light[row - begin]);
     }
 
-    /// The columns of the base know nothing of what actors cover.
+    /// The columns of the base know nothing of what actors cover. Few patches are pushed, but which of the
+    /// lines see one is a toss-up: picking those out first costs less than asking one by one.
     void cover(const LayeredRows& layer, std::size_t block, BlockSums& sums) const {
-        for_covered(layer, block, [&](std::size_t row, Index base, Index now, float value) {
-            // Few patches are pushed, and these bytes stay near at hand.
-            if ((work_.is_pushed[now] | work_.is_pushed[base]) != 0)
-                add_light(sums[row % block_size], value,
-                          to_double({work_.change[now].v - work_.change[base].v}).v);
-        });
+        const CoveredBlock& covered = layer.covered[block];
+        const std::size_t size = covered.entries.size();
+        std::array<Index, 256> picked;
+        for (std::size_t begin = 0; begin < size; begin += picked.size()) {
+            std::size_t count = 0;
+            for (std::size_t k = begin; k < std::min(begin + picked.size(), size); ++k) {
+                picked[count] = static_cast<Index>(k);
+                const CoveredEntry& entry = covered.entries[k];
+                count += work_.is_pushed[entry.now] | work_.is_pushed[entry.base()];
+            }
+            for (std::size_t p = 0; p < count; ++p) {
+                const CoveredEntry& entry = covered.entries[picked[p]];
+                add_light(sums[entry.lane()], covered.value.empty() ? 1.0F : covered.value[picked[p]],
+                          work_.change[entry.now].v - work_.change[entry.base()].v);
+            }
+        }
     }
 
     ResidualState& state_;
@@ -176,6 +195,14 @@ class Pusher {
     Surveyor& surveyor_;
     ResidualState::Workspace& work_;
 };
+
+/// Single rounds with everything heard of after each always converge, since F has no negative entries and
+/// gains are below 1.
+void judge_rounds(ResidualState::Progress& progress, double largest) {
+    if (largest > little_progress * progress.largest_before && progress.rounds_made > 1)
+        progress.rounds_allowed = std::max(1, progress.rounds_made / 2);
+    progress.largest_before = std::numeric_limits<double>::infinity();
+}
 
 void check(const ResidualProblem& problem, std::size_t state_size) {
     const std::size_t patches = problem.matrix.rows();
@@ -192,13 +219,19 @@ void check(const ResidualProblem& problem, std::size_t state_size) {
 }  // namespace
 
 ResidualState make_residual_state(const ResidualProblem& problem, const Context& context) {
+    return make_residual_state(problem, std::vector<std::optional<Lanes>>(problem.matrix.rows()), context);
+}
+
+ResidualState make_residual_state(const ResidualProblem& problem, std::span<const std::optional<Lanes>> known,
+                                  const Context& context) {
     const std::size_t patches = problem.matrix.rows();
-    check(problem, patches);
+    check(problem, known.size());
     ResidualState state;
     state.radiosity.resize(patches + 1);
     for (std::size_t i = 0; i < patches; ++i) {
-        state.radiosity[i] = to_lanes(problem.emission[i]);
-        state.radiosity[i].v[3] = 1;
+        Lanes alone = to_lanes(problem.emission[i]);
+        alone.v[3] = 1;
+        state.radiosity[i] = known[i].value_or(alone);
     }
     state.by_sight.resize(patches);
     state.by_light.resize(patches);
@@ -232,6 +265,7 @@ Certificate step(ResidualState& state, const ResidualProblem& problem, const Res
         throw Error(ErrorKind::cannot_converge, "reflectance",
                     "a patch reflects " + std::to_string(gain) +
                         " of the light around it; at 1 or more the light would grow without bound");
+    if (state.status != ResidualStatus::running) state.progress = {};
     state.status = ResidualStatus::running;
     gather_whole(state, problem, context);
     Surveyor surveyor(state, problem);
@@ -240,6 +274,7 @@ Certificate step(ResidualState& state, const ResidualProblem& problem, const Res
     const double asked = (state.left.empty() ? first_share : 1) * config.asked_error;
     for (;;) {
         const Survey survey = surveyor.look(gain, asked, context);
+        judge_rounds(state.progress, survey.largest);
         const bool is_met = survey.certificate.error_bound <= asked;
         const bool may_go_on = state.pushes - pushes_before < config.max_pushes;
         context.check_stop();

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -62,16 +63,25 @@ struct ResidualState {
     std::uint64_t rounds = 0;           ///< of them, or sweeps
     std::uint64_t sweeps = 0;
     std::uint64_t entries = 0;  ///< of columns that pushes went along, sweeps apart
-    /// How much rounding a row's sums may have gathered since they were computed, as a share of what is let
-    /// pass; at 1 they are computed afresh. Light that nothing reaches so keeps every bit.
+    /// How much rounding a row's sums may have gathered since they were computed, relative to them. Where
+    /// that comes to matter they are computed afresh; light that nothing reaches keeps every bit.
     std::vector<float> wear;
     ResidualStatus status = ResidualStatus::running;
 
+    /// How the solution at hand gets on. Rounds between surveys, which leave out what actors cover, converge
+    /// only where that is little: where they bring too little, fewer are made at once.
+    struct Progress {
+        int rounds_allowed = std::numeric_limits<int>::max();             ///< between two surveys
+        int rounds_made = 0;                                              ///< since the last survey
+        double largest_before = std::numeric_limits<double>::infinity();  ///< residual before them
+    } progress;
+
     /// Room to work in that is kept, since it takes longer to get than to use; means nothing between calls.
     struct Workspace {
-        std::vector<Lanes> change;              ///< of B, by patch, since the sums were right
-        std::vector<std::uint8_t> is_pushed;    ///< by patch: whether there is any
-        std::vector<Lanes> by_sight, by_light;  ///< what the sums of the layers are still to receive
+        std::vector<DoubleLanes> change;      ///< of B, by patch, since the sums were right
+        std::vector<std::uint8_t> is_pushed;  ///< by patch: 1 where there is any, else 0
+        /// What the sums of the layers are still to receive: in double, as they are, so that they last.
+        std::vector<DoubleLanes> by_sight, by_light;
         std::vector<Lanes> residual;            ///< r, W/m², by patch, without what is still to be received
         std::vector<Lanes> of_sight, of_light;  ///< by row: which share of it gets into the residual
         /// Largest channel of |r| with it; 0 where r was left as it is and is still good enough.
@@ -83,6 +93,11 @@ struct ResidualState {
 /// Starts with what shines by itself, B = E, and nothing reflected.
 /// Errors: invalid_input where sizes do not agree; cancelled.
 ResidualState make_residual_state(const ResidualProblem& problem, const Context& context);
+
+/// Starts from the radiosity of a similar problem's state, by patch, where it is known; elsewhere as above.
+/// The nearer it is, the less is left to push. Errors: likewise.
+ResidualState make_residual_state(const ResidualProblem& problem, std::span<const std::optional<Lanes>> known,
+                                  const Context& context);
 
 /// Takes over what changed in the layers since the state's sums were right. `problem.matrix` is as `show`
 /// left it, in one part of `changes` all of a row. Errors: as make_residual_state; then the state is of no

@@ -8,11 +8,11 @@ namespace afterglow {
 namespace {
 
 constexpr std::size_t rows_per_chunk = 128;
-// A row's sums are computed afresh after so many additions, or when these amount to a share of the sums: so
-// rounding never accumulates.
-constexpr std::size_t most_additions = 256;
-constexpr float wear_each = 1.0F / most_additions;
-constexpr float most_share = 0.25F;
+// What is added at once has at most a thousand terms, each of them rounded to double.
+constexpr double rounding_each = 0x1p-43;
+// A row's sums are computed afresh when their rounding may come to this share of them, far below that of a
+// sum just computed: so rounding never accumulates, nor does it stay behind when light goes out.
+constexpr double most_wear = 0x1p-30;
 constexpr std::size_t whole_rows_per_chunk = 64;
 
 /// What rows of a layer gather, computed afresh.
@@ -24,6 +24,20 @@ void gather_layer(const LayeredRows& layer, std::size_t first, std::size_t last,
             if (first <= row && row < last)
                 add_light(sums[row], value, to_double(radiosity[now]).v - to_double(radiosity[base]).v);
         });
+}
+
+double largest_of(const DoubleLanes& light) {
+    return std::max({std::abs(light.v[0]), std::abs(light.v[1]), std::abs(light.v[2])});
+}
+
+/// Adds to a sum whose rounding is at most `wear` of it, and returns what it may be then: relative to less
+/// light it is more.
+double add(DoubleLanes& sum, const DoubleLanes& light, double wear) {
+    const double before = largest_of(sum);
+    sum.v += light.v;
+    if (!is_any(light)) return wear;
+    const double after = largest_of(sum);
+    return (wear * before + rounding_each * std::max({before, after, largest_of(light)})) / after;
 }
 
 /// Marks the rows of a layer from `first` on that gather from a column that changed.
@@ -44,9 +58,8 @@ void mark_reached(const LayeredRows& layer, std::size_t first, std::size_t last,
 void gather_rows(ResidualState& state, const ResidualProblem& problem, std::size_t first, std::size_t last) {
     gather_layer(problem.matrix.sight, first, last, state.radiosity, state.by_sight);
     gather_layer(problem.matrix.light, first, last, state.radiosity, state.by_light);
-    // They began together; each is computed afresh in its own turn.
-    for (std::size_t row = first; row < last; ++row)
-        state.wear[row] = wear_each * static_cast<float>(row % most_additions);
+    std::fill(state.wear.begin() + static_cast<std::ptrdiff_t>(first),
+              state.wear.begin() + static_cast<std::ptrdiff_t>(last), 0.0F);
 }
 
 void add_to_row(ResidualState& state, const ResidualProblem& problem, std::size_t row,
@@ -57,16 +70,11 @@ void add_to_row(ResidualState& state, const ResidualProblem& problem, std::size_
         state.by_light[row].v[3] += by_light.v[3];
         return;
     }
-    const auto largest = [](const DoubleLanes& light) {
-        return std::max({std::abs(light.v[0]), std::abs(light.v[1]), std::abs(light.v[2])});
-    };
-    // What is on its way is rounded to float, relative to itself.
-    const double share = std::max(largest(by_sight), largest(by_light)) /
-                         std::max(largest(state.by_sight[row]), largest(state.by_light[row]));
-    state.by_sight[row].v += by_sight.v;
-    state.by_light[row].v += by_light.v;
-    state.wear[row] += wear_each + static_cast<float>(share) / most_share;
-    if (!(state.wear[row] < 1)) gather_rows(state, problem, row, row + 1);
+    const double before = state.wear[row];
+    const double wear =
+        std::max(add(state.by_sight[row], by_sight, before), add(state.by_light[row], by_light, before));
+    state.wear[row] = static_cast<float>(wear);
+    if (!(wear < most_wear)) gather_rows(state, problem, row, row + 1);
 }
 
 void gather_all(ResidualState& state, const ResidualProblem& problem, const Context& context) {
@@ -75,10 +83,10 @@ void gather_all(ResidualState& state, const ResidualProblem& problem, const Cont
     });
 }
 
-void gather_reached(ResidualState& state, const ResidualProblem& problem, std::span<const Lanes> change,
+void gather_reached(ResidualState& state, const ResidualProblem& problem, std::span<const DoubleLanes> change,
                     const Context& context) {
     std::vector<std::uint8_t> changed(change.size());
-    for (std::size_t j = 0; j < change.size(); ++j) changed[j] = is_any(to_double(change[j])) ? 1 : 0;
+    for (std::size_t j = 0; j < change.size(); ++j) changed[j] = is_any(change[j]) ? 1 : 0;
     context.for_chunks(problem.matrix.rows(), rows_per_chunk, [&](std::size_t first, std::size_t last) {
         std::vector<std::uint8_t> reached(last - first, 0);
         mark_reached(problem.matrix.sight, first, last, changed, reached);

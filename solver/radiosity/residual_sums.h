@@ -17,7 +17,7 @@ inline void add_light(DoubleLanes& sum, float value, const DoubleLanes::Vector& 
 /// The sums of rows [first, last) computed afresh. Thread-safety: other rows may be computed meanwhile.
 void gather_rows(ResidualState& state, const ResidualProblem& problem, std::size_t first, std::size_t last);
 
-/// Adds to a row's sums what pushes brought it, and computes them afresh where that has happened too often.
+/// Adds to a row's sums what pushes brought it, and computes them afresh where rounding has come to matter.
 void add_to_row(ResidualState& state, const ResidualProblem& problem, std::size_t row,
                 const DoubleLanes& by_sight, const DoubleLanes& by_light);
 
@@ -26,7 +26,7 @@ void gather_all(ResidualState& state, const ResidualProblem& problem, const Cont
 
 /// Likewise of the rows in layers that gather any light which `change` says has changed, by patch and
 /// `nowhere`; the others keep every bit.
-void gather_reached(ResidualState& state, const ResidualProblem& problem, std::span<const Lanes> change,
+void gather_reached(ResidualState& state, const ResidualProblem& problem, std::span<const DoubleLanes> change,
                     const Context& context);
 
 /// The sums of the whole rows. Same bits for any number of threads. Errors: cancelled.

@@ -28,8 +28,8 @@ class Surveyor {
 
     /// r of a patch with what is on its way to it, W/m².
     [[nodiscard]] Lanes residual(std::size_t i) const {
-        Lanes::Vector r = work_.residual[i].v + work_.of_sight[i].v * work_.by_sight[i].v;
-        if (expects_from_lamps_) r += work_.of_light[i].v * work_.by_light[i].v;
+        Lanes::Vector r = work_.residual[i].v + work_.of_sight[i].v * to_single(work_.by_sight[i]).v;
+        if (expects_from_lamps_) r += work_.of_light[i].v * to_single(work_.by_light[i]).v;
         return {r};
     }
 
