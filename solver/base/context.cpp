@@ -37,6 +37,10 @@ void Context::check_stop() const {
     if (shared_->stop.stop_requested()) throw Error(ErrorKind::cancelled, "", "stopped on request");
 }
 
+std::stop_token Context::stop_token() const {
+    return shared_->stop;
+}
+
 void Context::report(double fraction, std::string_view doing) const {
     check_stop();
     if (!shared_->sink) return;

@@ -32,6 +32,9 @@ class Context {
     /// Throws Error{cancelled} once a stop has been asked for.
     void check_stop() const;
 
+    /// For whoever has to be told of a stop while it waits for something else.
+    [[nodiscard]] std::stop_token stop_token() const;
+
     /// Says that `fraction` of this context's part is done; also checks for a stop.
     void report(double fraction, std::string_view doing) const;
 

@@ -7,7 +7,7 @@ namespace afterglow {
 
 namespace {
 
-std::uint32_t reversed(std::uint32_t x) {
+[[gnu::always_inline]] inline std::uint32_t reversed(std::uint32_t x) {
     x = ((x >> 1U) & 0x55555555U) | ((x & 0x55555555U) << 1U);
     x = ((x >> 2U) & 0x33333333U) | ((x & 0x33333333U) << 2U);
     x = ((x >> 4U) & 0x0F0F0F0FU) | ((x & 0x0F0F0F0FU) << 4U);
@@ -15,7 +15,7 @@ std::uint32_t reversed(std::uint32_t x) {
 }
 
 /// Owen's nested uniform scrambling: every bit is flipped by a hash of the bits above it.
-std::uint32_t scrambled(std::uint32_t x, std::uint32_t seed) {
+[[gnu::always_inline]] inline std::uint32_t scrambled(std::uint32_t x, std::uint32_t seed) {
     x = reversed(x);
     x ^= x * 0x3d20adeaU;
     x += seed;
@@ -72,9 +72,20 @@ SobolPoints::SobolPoints(std::size_t count) : points_(count) {
 
 Sample4 SobolPoints::at(std::size_t index, std::uint64_t seed) const {
     Sample4 out;
-    for (std::size_t d = 0; d < 4; ++d)
-        out[d] = to_unit(scrambled(points_[index][d], static_cast<std::uint32_t>(mixed(seed, d))));
+    for (std::size_t d = 0; d < 4; ++d) out[d] = to_unit(scrambled(points_[index][d], seed_of(seed, d)));
     return out;
+}
+
+std::uint32_t SobolPoints::seed_of(std::uint64_t seed, std::size_t dimension) {
+    return static_cast<std::uint32_t>(mixed(seed, dimension));
+}
+
+void SobolPoints::at(std::size_t dimension, const std::array<std::uint32_t, 16>& index,
+                     const std::array<std::uint32_t, 16>& seed, std::array<float, 16>& out) const {
+    std::array<std::uint32_t, 16> point;
+    for (std::size_t lane = 0; lane < point.size(); ++lane) point[lane] = points_[index[lane]][dimension];
+    for (std::size_t lane = 0; lane < point.size(); ++lane)
+        out[lane] = to_unit(scrambled(point[lane], seed[lane]));
 }
 
 Vec3 cosine_direction(float u, float v) {

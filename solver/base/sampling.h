@@ -41,6 +41,12 @@ class SobolPoints {
     /// Point `index` of the scrambling that `seed` selects.
     [[nodiscard]] Sample4 at(std::size_t index, std::uint64_t seed) const;
 
+    /// What `at` makes of a seed for one dimension.
+    [[nodiscard]] static std::uint32_t seed_of(std::uint64_t seed, std::size_t dimension);
+    /// One dimension of sixteen points, each of a scrambling of its own: what `at` gives, to the bit.
+    void at(std::size_t dimension, const std::array<std::uint32_t, 16>& index,
+            const std::array<std::uint32_t, 16>& seed, std::array<float, 16>& out) const;
+
   private:
     std::vector<std::array<std::uint32_t, 4>> points_;
 };

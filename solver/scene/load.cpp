@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "solver/base/file.h"
+#include "solver/scene/bundle.h"
 #include "solver/scene/gltf_reader.h"
 #include "solver/scene/json_reader.h"
 #include "solver/scene/obj_reader.h"
@@ -24,6 +25,8 @@ Scene read_any(std::string_view bytes, SceneFormat format, const std::string& na
             return read_obj(bytes, name, read_resource, config);
         case SceneFormat::json:
             return read_json_scene(bytes, name, read_resource, config);
+        case SceneFormat::bundle:
+            break;
     }
     throw Error(ErrorKind::unsupported, name, "this format is not read");
 }
@@ -64,7 +67,12 @@ Scene load_scene(const std::filesystem::path& path, const LoadConfig& config) {
 
 Scene read_scene(std::string_view bytes, SceneFormat format, const std::string& name,
                  const LoadConfig& config) {
-    return finished(read_any(bytes, format, name, {}, config), name, config);
+    if (format != SceneFormat::bundle)
+        return finished(read_any(bytes, format, name, {}, config), name, config);
+    const Bundle bundle = unpack(bytes, name);
+    return finished(read_any(bundle.files.at(bundle.main), format_of(bundle.main), bundle.main,
+                             resources_of(bundle), config),
+                    bundle.main, config);
 }
 
 }  // namespace afterglow

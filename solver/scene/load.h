@@ -27,8 +27,8 @@ struct LoadConfig {
     std::optional<Rgb> background;          ///< replaces the scene's own background radiance
 };
 
-/// What the bytes of a scene are.
-enum class SceneFormat { glb, gltf, obj, json };
+/// What the bytes of a scene are; a bundle is a scene with the files it refers to, see bundle.h.
+enum class SceneFormat { glb, gltf, obj, json, bundle };
 
 /// The format a file name's ending stands for. Errors: unsupported, naming the endings that are read.
 SceneFormat format_of(const std::filesystem::path& path);
@@ -38,8 +38,8 @@ SceneFormat format_of(const std::filesystem::path& path);
 /// docs/scene-format.md.
 Scene load_scene(const std::filesystem::path& path, const LoadConfig& config = {});
 
-/// Reads a scene from memory, as uploaded. `name` stands for it in errors. References to other files are
-/// errors.
+/// Reads a scene from memory, as uploaded. `name` stands for it in errors, for a bundle its scene's own name.
+/// References to files that are not in it are errors.
 Scene read_scene(std::string_view bytes, SceneFormat format, const std::string& name,
                  const LoadConfig& config = {});
 

@@ -52,20 +52,6 @@ bool has_scheme(const std::string& uri) {
            std::isalpha(static_cast<unsigned char>(uri.front())) != 0;
 }
 
-/// The path a URI stands for, relative to the scene's folder; refuses whatever is not plainly inside it.
-fs::path relative_path(const std::string& uri) {
-    if (has_scheme(uri)) refuse(uri, "only paths relative to the scene's folder are read");
-    std::string text = percent_decoded(uri);
-    if (text.empty()) refuse(uri, "names no file");
-    if (text.find('\0') != std::string::npos) refuse(uri, "contains a zero byte");
-    std::replace(text.begin(), text.end(), '\\', '/');
-    fs::path path = fs::path(text).lexically_normal();
-    if (path.has_root_path() || has_scheme(text))
-        refuse(uri, "only paths relative to the scene's folder are read");
-    if (*path.begin() == "..") refuse(uri, "leads outside the scene's folder");
-    return path;
-}
-
 bool is_inside(const fs::path& path, const fs::path& folder) {
     const auto [rest, end] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
     return rest == folder.end() && end != path.end();
@@ -87,6 +73,19 @@ std::string read_inside(const fs::path& folder, const std::string& uri, std::siz
 }
 
 }  // namespace
+
+fs::path relative_path(const std::string& uri) {
+    if (has_scheme(uri)) refuse(uri, "only paths relative to the scene's folder are read");
+    std::string text = percent_decoded(uri);
+    if (text.empty()) refuse(uri, "names no file");
+    if (text.find('\0') != std::string::npos) refuse(uri, "contains a zero byte");
+    std::replace(text.begin(), text.end(), '\\', '/');
+    fs::path path = fs::path(text).lexically_normal();
+    if (path.has_root_path() || has_scheme(text))
+        refuse(uri, "only paths relative to the scene's folder are read");
+    if (*path.begin() == "..") refuse(uri, "leads outside the scene's folder");
+    return path;
+}
 
 ResourceReader resources_in(fs::path folder, std::size_t max_bytes) {
     if (folder.empty()) folder = ".";

@@ -23,6 +23,11 @@ inline constexpr std::size_t max_resource_bytes = std::size_t{1} << 30U;
 /// too_large past `max_bytes`. Thread-safety: the function may be called from any thread.
 ResourceReader resources_in(std::filesystem::path folder, std::size_t max_bytes = max_resource_bytes);
 
+/// The path that a URI stands for, relative to the folder of the file that names it, with slashes: what
+/// `resources_in` says of a URI without looking at any file. Errors: invalid_input for a refused URI.
+/// Thread-safety: pure.
+std::filesystem::path relative_path(const std::string& uri);
+
 /// Text from a file made fit for a one-line message: in double quotes, control characters replaced, at most
 /// about 80 bytes. Valid UTF-8 stays valid.
 std::string in_quotes(std::string_view text);

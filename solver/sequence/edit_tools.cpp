@@ -6,7 +6,9 @@
 namespace afterglow {
 
 void forget_frames(SequenceState::Parts& parts) {
+    parts.edited = true;
     parts.kept_light.reset();
+    parts.radiosity_before.clear();
     parts.kept_rows.reset();
     parts.picture = {};
     parts.visible_before.clear();

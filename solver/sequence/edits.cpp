@@ -6,6 +6,7 @@
 
 #include "solver/base/error.h"
 #include "solver/formfactor/static_cache.h"
+#include "solver/scene/world_edits.h"
 #include "solver/sequence/choose.h"
 #include "solver/sequence/edit_tools.h"
 #include "solver/sequence/prepare.h"
@@ -13,29 +14,6 @@
 namespace afterglow {
 
 namespace {
-
-void require_light(const Rgb& value, float limit, const char* field, const char* rule) {
-    if (!is_finite(value) || value.r < 0 || value.g < 0 || value.b < 0 || max_channel(value) >= limit)
-        throw Error(ErrorKind::invalid_input, field, rule);
-}
-
-void require_path(const Path& path) {
-    if (path.keys.empty()) throw Error(ErrorKind::invalid_input, "path", "needs at least one key");
-    for (std::size_t k = 0; k < path.keys.size(); ++k) {
-        const Key<Pose>& key = path.keys[k];
-        const std::string place = "path key " + std::to_string(k);
-        if (!std::isfinite(key.time_s) || !is_finite(key.value.translation) ||
-            !(std::abs(glm::length(key.value.rotation) - 1) < 1e-3F))
-            throw Error(ErrorKind::invalid_input, place, "must be finite, its rotation of unit length");
-        if (k > 0 && key.time_s < path.keys[k - 1].time_s)
-            throw Error(ErrorKind::invalid_input, place, "must not come before the one before it");
-    }
-}
-
-template <class Tracks>
-void drop_track(Tracks& tracks, Index target) {
-    std::erase_if(tracks, [&](const auto& track) { return track.target == target; });
-}
 
 void set_lamps(SequenceState::Parts& parts, Lamps lamps, const Context& context) {
     parts.lamps = std::move(lamps);
@@ -58,10 +36,8 @@ void set_lamps(SequenceState::Parts& parts, Lamps lamps, const Context& context)
 EditOutcome set_emission(SequenceState& state, const std::string& material, const Rgb& emission,
                          const Context& context) {
     SequenceState::Parts& parts = state.parts();
-    const Index edited = index_named(parts.world.materials, 0, material, "material");
-    require_light(emission, 1e6F, "emission", "must lie in [0, 1e6) W/m²/sr");
-    parts.world.materials[edited].emission = emission;
-    drop_track(parts.world.material_emission, edited);
+    set_emission(parts.world, material, emission);
+    parts.edited = true;
     // A lamp that is off is still a lamp.
     if (max_channel(emission) <= 0) return {};
     if (reaches_more(parts, context)) return begin_anew(parts, context);
@@ -73,11 +49,8 @@ EditOutcome set_emission(SequenceState& state, const std::string& material, cons
 }
 
 EditOutcome set_reflectance(SequenceState& state, const std::string& material, const Rgb& reflectance) {
-    SequenceState::Parts& parts = state.parts();
-    const Index edited = index_named(parts.world.materials, 0, material, "material");
-    require_light(reflectance, 1, "reflectance", "must lie in [0, 1)");
-    parts.world.materials[edited].reflectance = reflectance;
-    drop_track(parts.world.material_reflectance, edited);
+    set_reflectance(state.parts().world, material, reflectance);
+    state.parts().edited = true;
     return {};
 }
 
@@ -85,18 +58,10 @@ EditOutcome set_path(SequenceState& state, const std::string& actor, double from
                      const Context& context) {
     SequenceState::Parts& parts = state.parts();
     const Index edited = index_named(parts.world.bodies, furniture + 1, actor, "actor");
-    require_path(path);
-    if (!std::isfinite(from_s)) throw Error(ErrorKind::invalid_input, "from", "must be a finite time");
     Path& old = parts.world.bodies[edited].path;
-    Path joined;
-    for (const Key<Pose>& key : old.keys)
-        if (key.time_s < from_s) joined.keys.push_back(key);
-    // Until then as before: two keys at one time are a jump.
-    if (!joined.keys.empty()) joined.keys.push_back({from_s, old.at(from_s)});
-    joined.keys.push_back({from_s, path.at(from_s)});
-    for (const Key<Pose>& key : path.keys)
-        if (key.time_s > from_s) joined.keys.push_back(key);
-    const Path before = std::exchange(old, std::move(joined));
+    const Path before = old;
+    set_path(parts.world, actor, from_s, path);
+    parts.edited = true;
     try {
         if (reaches_more(parts, context)) return begin_anew(parts, context);
         const auto ahead = parts.strategy->follow_path(parts.lines(0), edited, before, context);
@@ -112,6 +77,7 @@ EditOutcome set_path(SequenceState& state, const std::string& actor, double from
 EditOutcome set_camera(SequenceState& state, const PlacedCamera& camera) {
     if (camera.path.keys.empty()) throw Error(ErrorKind::invalid_input, "camera", "needs a place");
     state.parts().camera = camera;
+    state.parts().edited = true;
     return {};
 }
 

@@ -26,7 +26,25 @@ struct Before {
     Lamps lamps;
     StaticLines lines;
     float lift_m;
+    std::vector<Lanes> radiosity;  ///< by patch; empty where none was kept
 };
+
+/// What patches that are still there shone with.
+std::vector<std::optional<Lanes>> known_radiosity(const Before& before, const PatchMesh& mesh,
+                                                  const std::vector<std::uint8_t>& kept) {
+    if (before.radiosity.empty()) return {};
+    std::vector<std::optional<Lanes>> known(mesh.size());
+    for (Index p = 0; p < mesh.size(); ++p) {
+        const bool moves = p >= mesh.static_size();
+        const Index then = moves ? p - mesh.static_size() + before.mesh.static_size() : p;
+        // Actors may be divided otherwise near what moved: then their numbers say nothing.
+        const bool is_there =
+            moves ? before.mesh.size() - before.mesh.static_size() == mesh.size() - mesh.static_size()
+                  : kept[p] != 0;
+        if (is_there) known[p] = before.radiosity[then];
+    }
+    return known;
+}
 
 /// Whether light lines end as they did: lamps of actors count by their place among the moving patches.
 bool same_lamps(const Before& before, const Parts& parts, const std::vector<std::uint8_t>& kept) {
@@ -47,6 +65,7 @@ double lay_again(Parts& parts, const Before& before, std::vector<Box> changed, c
     const auto kept = keep_numbers(before.mesh, parts.mesh);
     lay_lines(parts);
     forget_frames(parts);
+    parts.radiosity_before = known_radiosity(before, parts.mesh, kept);
     parts.background = {};
     // Coarser preliminary pictures may have been all there is so far.
     const Index lines = parts.sight->lines_per_patch();
@@ -75,11 +94,17 @@ EditOutcome refurnish(Parts& parts, const std::function<std::vector<Box>(World&)
                       const Context& context) {
     World world_before = parts.world;
     std::vector<Box> changed = change(parts.world);
-    const Before before{std::move(parts.mesh), std::move(parts.lamps), std::move(parts.background),
-                        parts.sight->lift_m()};
+    Before before{std::move(parts.mesh),
+                  std::move(parts.lamps),
+                  std::move(parts.background),
+                  parts.sight->lift_m(),
+                  {}};
+    if (parts.kept_light && parts.kept_light->state)
+        before.radiosity = std::move(parts.kept_light->state->radiosity);
     try {
         parts.caster = RayCaster(parts.world);
-        return {lay_again(parts, before, std::move(changed), context), 0, false};
+        const double lines_reused = lay_again(parts, before, std::move(changed), context);
+        return {lines_reused, 0, !parts.radiosity_before.empty()};
     } catch (...) {
         parts.world = std::move(world_before);
         parts.caster = RayCaster(parts.world);

@@ -10,9 +10,10 @@ namespace afterglow {
 // nodes of a scene. What comes after is what a new job on the edited scene would give, but for the noise of
 // lines near the change: patches that are new go by other directions. Patches elsewhere keep number and
 // lines; a line that met neither the old place nor the new one up to what it saw keeps its background, and
-// only the others are traced. The light starts anew. The size of patches stays what it was, where quality
-// settles it. Errors of all: not_found, listing the pieces there are; invalid_input naming the value;
-// cancelled. Nothing is changed then, but much is to be computed again. One thread at a time.
+// only the others are traced. Light that is kept as residual starts from what these patches shone with, other
+// light anew. The size of patches stays what it was, where quality settles it. Errors of all: not_found,
+// listing the pieces there are; invalid_input naming the value; cancelled. Nothing is changed then, but much
+// is to be computed again. One thread at a time.
 
 /// Moves a piece by a rigid motion from where it stands, in world coordinates. Errors: also invalid_input,
 /// "motion", where it is not finite or its rotation not of unit length.

@@ -69,10 +69,13 @@ struct SequenceState::Parts {
     /// Sight lines of the frame before whose changes are still to be counted; empty at first.
     std::vector<Index> visible_before;
     std::uint64_t frames_shown = 0;
+    bool edited = false;                  ///< since the last of them
     std::optional<KeptLight> kept_light;  ///< of a solution that keeps it
     std::optional<KeptRows> kept_rows;    ///< likewise
-    KeptPictureState picture;             ///< the final one of the frame before; empty where the camera moves
-    std::optional<float> exposure_ev;     ///< set once, for all frames
+    /// By patch, of before an edit, where `kept_light` is to start from; empty: from nothing.
+    std::vector<std::optional<Lanes>> radiosity_before;
+    KeptPictureState picture;          ///< the final one of the frame before; empty where the camera moves
+    std::optional<float> exposure_ev;  ///< set once, for all frames
     SequenceStatistics statistics;
     Warnings warnings;
     bool warned_of_exhaustion = false;  ///< one such warning a job is enough

@@ -48,6 +48,8 @@ class Publisher {
         return sink_ && parts_.config.revisions == Revisions::all;
     }
 
+    [[nodiscard]] bool has_published() const { return count_ > 0; }
+
     void publish_preliminary(Picture radiance, double residual) {
         publish(std::move(radiance), residual, {});
     }
@@ -81,9 +83,11 @@ class Publisher {
 std::vector<Index> preliminary_looks(const SequenceState::Parts& parts) {
     const Index all = parts.sight->lines_per_patch();
     std::vector<Index> looks;
-    if (parts.frames_shown == 0) looks = {std::max(all / 16, Index{4}), std::max(all / 4, Index{8})};
+    const bool follows = parts.kept_light || parts.kept_rows;
+    if (parts.frames_shown == 0 || (parts.edited && !follows))
+        looks = {std::max(all / 16, Index{4}), std::max(all / 4, Index{8})};
     // What follows the last frame is there before a preliminary picture could be.
-    if (!parts.kept_light && !parts.kept_rows) looks.push_back(all);
+    if (!follows) looks.push_back(all);
     return looks;
 }
 
@@ -132,6 +136,10 @@ const Warnings& SequenceState::warnings() const {
     return parts_->warnings;
 }
 
+const World& SequenceState::world() const {
+    return parts_->world;
+}
+
 SequenceState make_state(World world, const SequenceConfig& config, const Context& context) {
     const Stopwatch watch;
     check(config);
@@ -156,6 +164,7 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     const Stopwatch watch;
     const Milliseconds outside_before = parts.statistics.outside_frames();
     if (!parts.exposure_ev) parts.exposure_ev = find_exposure(parts, context.part(0, 0.1));
+    parts.statistics.exposure_ev = parts.exposure_ev;
 
     FrameRefinement frame(parts, frame_number);
     Publisher publisher(parts, frame_number, on_revision);
@@ -176,6 +185,11 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     frame.look(all, *parts.strategy, last);
     frame.solve_finally(level_of(parts.config).certificate, last);
     warn_of_exhaustion(parts, frame, frame_number);
+    // After an edit all of the picture may be new, which takes longer than the light that follows.
+    if (parts.edited && publisher.wants_preliminary() && !publisher.has_published())
+        publisher.publish_preliminary(
+            frame.preliminary_picture(parts.config.width, parts.config.height, last),
+            frame.certificate().residual);
     Picture picture = frame.final_picture(last);
     if (parts.config.estimate == Estimate::probes) frame.estimate_error(picture, last);
     publisher.publish_final(std::move(picture), frame.statistics());
@@ -184,6 +198,7 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     statistics.frame = frame_number;
     statistics.visibility_changes += count_changes(parts);
     ++parts.frames_shown;
+    parts.edited = false;
     const auto ahead = parts.strategy->work_ahead();
     parts.statistics.work_ahead.assign(ahead.begin(), ahead.end());
     statistics.total = watch.elapsed() - (parts.statistics.outside_frames() - outside_before);

@@ -42,6 +42,8 @@ struct SequenceStatistics {
     Milliseconds static_pass{};  ///< sight lines against the furniture, or reading them from the cache
     bool static_from_cache = false;
     std::vector<WorkAhead> work_ahead;  ///< what was done for ranges of frames at once
+    /// Stops by which all pictures are brightened, once a frame has been computed.
+    std::optional<float> exposure_ev = {};
 
     /// Time spent within `step` that is in no frame's total.
     [[nodiscard]] Milliseconds outside_frames() const { return static_pass + total(work_ahead); }
@@ -69,6 +71,8 @@ class SequenceState {
 
     [[nodiscard]] const SequenceStatistics& statistics() const;
     [[nodiscard]] const Warnings& warnings() const;
+    /// What is solved, as the edits so far have left it.
+    [[nodiscard]] const World& world() const;
 
     struct Parts;
     explicit SequenceState(std::unique_ptr<Parts> parts);
