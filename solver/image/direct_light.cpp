@@ -74,67 +74,52 @@ float DirectLight::bound(const Emitter& emitter, const Vec3& point, const Vec3& 
     return max_channel(emitter.emission) * emitter.area_m2 * cosine / squared;
 }
 
-DirectLight::Place DirectLight::place_on(Index number, Seen& seen, float choice, float s, float t) const {
-    const Emitter& emitter = emitters_[number];
-    if (emitter.rectangle) {
-        auto& view = seen.rectangle[number];
-        if (!view) view.emplace(*emitter.rectangle, seen.point);
-        const RectanglePoint point = view->at(s, t);
-        return {point.position, point.solid_angle};
-    }
+DirectLight::Place DirectLight::place_on_patches(const Emitter& emitter, const Vec3& from, float choice,
+                                                 float s, float t) const {
     const auto& shares = emitter.cumulative_share;
     const auto k =
         static_cast<std::size_t>(std::upper_bound(shares.begin(), shares.end() - 1, choice) - shares.begin());
     const PatchPoint on = mesh_->point_on(emitter.patches[k], s, t);
     const Vec3 position = emitter.pose.point(on.position);
-    const Vec3 back = seen.point - position;
+    const Vec3 back = from - position;
     const float squared = glm::dot(back, back);
     if (!(squared > 0)) return {position, 0};
     const float facing = glm::dot(emitter.pose.direction(on.normal), back);
     return {position, emitter.area_m2 * std::max(0.0F, facing) / (squared * std::sqrt(squared))};
 }
 
-void DirectLight::look_from(const Vec3& point, const Vec3& normal, Seen& seen) const {
-    seen.point = point;
-    seen.normal = normal;
-    seen.bound.clear();
-    seen.rectangle.assign(emitters_.size(), std::nullopt);
-    seen.sum = 0;
-    for (const Emitter& emitter : emitters_) {
-        seen.bound.push_back(bound(emitter, point, normal));
-        seen.sum += seen.bound.back();
-    }
-}
-
-LightSample DirectLight::sample(Seen& seen, float choice, float s, float t) const {
-    if (!(seen.sum > 0)) return {};
-    float left = choice * seen.sum;
-    Index chosen = no_index;
+LightSample DirectLight::sample(const Vec3& point, const Vec3& normal, float choice, float s, float t) const {
+    std::vector<float> bounds;
+    float sum = 0;
+    for (const Emitter& emitter : emitters_) sum += bounds.emplace_back(bound(emitter, point, normal));
+    if (!(sum > 0)) return {};
+    float left = choice * sum;
+    const Emitter* chosen = nullptr;
     float weight = 0;
-    for (Index e = 0; e < emitters_.size(); ++e) {
-        const float w = seen.bound[e];
-        if (w <= 0) continue;
-        chosen = e;
-        weight = w;
-        if (left < w) break;
-        left -= w;
+    for (std::size_t e = 0; e < emitters_.size(); ++e) {
+        if (bounds[e] <= 0) continue;
+        chosen = &emitters_[e];
+        weight = bounds[e];
+        if (left < weight) break;
+        left -= weight;
     }
     // What is left of `choice` within the chosen lamp is uniform again.
-    const Place place = place_on(chosen, seen, std::min(left / weight, 1.0F), s, t);
-    const Vec3 across = place.position - seen.point;
+    const float rest = std::min(left / weight, 1.0F);
+    Place place;
+    if (chosen->rectangle) {
+        const RectanglePoint on = point_seen(*chosen->rectangle, point, s, t);
+        place = {on.position, on.solid_angle};
+    } else {
+        place = place_on_patches(*chosen, point, rest, s, t);
+    }
+    const Vec3 across = place.position - point;
     LightSample out;
     out.distance_m = glm::length(across);
     if (!(out.distance_m > 0)) return {};
     out.direction = across / out.distance_m;
-    const float cosine = std::max(0.0F, glm::dot(out.direction, seen.normal));
-    out.irradiance = emitters_[chosen].emission * (cosine * place.solid_angle * seen.sum / (pi * weight));
+    const float cosine = std::max(0.0F, glm::dot(out.direction, normal));
+    out.irradiance = chosen->emission * (cosine * place.solid_angle * sum / (pi * weight));
     return out;
-}
-
-LightSample DirectLight::sample(const Vec3& point, const Vec3& normal, float choice, float s, float t) const {
-    Seen seen;
-    look_from(point, normal, seen);
-    return sample(seen, choice, s, t);
 }
 
 bool DirectLight::shines_like(const DirectLight& other) const {

@@ -38,42 +38,35 @@ class DirectLight {
     [[nodiscard]] LightSample sample(const Vec3& point, const Vec3& normal, float choice, float s,
                                      float t) const;
 
-    /// The lamps as one point sees them: what all samples from there share. One thread at a time; to be used
-    /// again for other points.
-    struct Seen {
-        Vec3 point{0}, normal{0};
-        float sum = 0;                                        ///< of `bound`; 0: no lamp gives anything here
-        std::vector<float> bound;                             ///< by emitter
-        std::vector<std::optional<RectangleView>> rectangle;  ///< by emitter, made when first needed
-    };
-    void look_from(const Vec3& point, const Vec3& normal, Seen& seen) const;
-    /// As above, from the point that was last looked from.
-    [[nodiscard]] LightSample sample(Seen& seen, float choice, float s, float t) const;
-
     /// Whether the other's lamps stand where these do and shine alike; of the same lamps of the same mesh.
     [[nodiscard]] bool shines_like(const DirectLight& other) const;
     /// A box around each lamp that is on, world coordinates.
     [[nodiscard]] std::vector<Box> boxes() const;
 
-  private:
+    /// A lamp that is on.
     struct Emitter {
         Vec3 centre{0};
         float radius_m = 0;
-        Rgb emission{0};  // radiosity
+        Rgb emission{0};  ///< radiosity, W/m²
         float area_m2 = 0;
-        std::optional<RectangleLight> rectangle;
-        std::vector<Index> patches;           // where it is none
-        std::vector<float> cumulative_share;  // of the area, by patch
+        std::optional<RectangleLight> rectangle;  ///< world
+        std::vector<Index> patches;               ///< where it is none
+        std::vector<float> cumulative_share;      ///< of the area, by patch
         Pose pose;
     };
-    [[nodiscard]] static float bound(const Emitter& emitter, const Vec3& point, const Vec3& normal);
-    /// A point of the emitter, the normal there, and the solid angle it stands for (negative: seen from
-    /// behind).
+    [[nodiscard]] std::span<const Emitter> emitters() const { return emitters_; }
+
+    /// A point of an emitter, and the solid angle it stands for.
     struct Place {
-        Vec3 position;
-        float solid_angle;
+        Vec3 position{0};
+        float solid_angle = 0;
     };
-    [[nodiscard]] Place place_on(Index emitter, Seen& seen, float choice, float s, float t) const;
+    /// On an emitter that is no rectangle, seen from a point.
+    [[nodiscard]] Place place_on_patches(const Emitter& emitter, const Vec3& from, float choice, float s,
+                                         float t) const;
+
+  private:
+    [[nodiscard]] static float bound(const Emitter& emitter, const Vec3& point, const Vec3& normal);
 
     const PatchMesh* mesh_;
     std::vector<Emitter> emitters_;

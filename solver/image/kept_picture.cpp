@@ -4,7 +4,6 @@
 #include <atomic>
 
 #include "solver/image/picture_changes.h"
-#include "solver/image/pixel_tally.h"
 
 namespace afterglow {
 
@@ -21,32 +20,39 @@ std::size_t further_count(const PictureConfig& config) {
 class TileUpdater {
   public:
     TileUpdater(KeptPictureState& state, const LitWorld& lit, const PictureChanges& changes,
-                const SobolPoints& camera_points, const ShadowLines& lines)
+                const CameraSamples& camera, const ShadowLines& lines)
         : state_(state),
+          lit_(lit),
           changes_(changes),
-          samples_(state.view, lit, state.config, camera_points, lines),
+          samples_(lit, camera, lines),
           few_(static_cast<std::size_t>(state.config.samples_per_pixel)),
           more_(further_count(state.config)) {}
 
     void update(Index tile) {
         KeptTile& kept = state_.tiles[tile];
         if (!changes_.touch(tile, kept)) return;
-        ++changed_tiles;
+        samples_.begin_tile();
         find_actors(tile, kept);
+        const bool weighed = changes_.weigh_otherwise(kept);
+        // What a sample met on an actor is not kept: where one is seen and sums change, all are looked at.
+        look_at_all_ = changes_.everything || changes_.changed_cover[tile] != 0 ||
+                       (actors_.may_cover && (weighed || !changed_shadows_.empty()));
+        new_first_.fill(weighed);
+        new_further_.fill(weighed);
         const std::size_t weights = kept.weights.size();
-        changed_.fill(false);
         update_first(tile, kept);
         update_further(tile, kept);
-        for_pixels(tile, [&](std::size_t pixel, int x, int y) {
-            if (changed_[pixel]) state_.picture.at(x, y) = tally_of(kept, pixel).mean();
-        });
+        put_together(kept);
+        for_pixels(tile, [&](std::size_t pixel, int x, int y) { light(kept, pixel, x, y); });
         if (kept.weights.size() != weights) kept.note_patches();
     }
     [[nodiscard]] std::uint64_t rays_traced() const { return samples_.rays_traced(); }
 
-    std::uint64_t samples = 0, changed_tiles = 0;  ///< looked at so far
+    std::uint64_t samples = 0, pixels = 0;  ///< looked at, and lit, so far
 
   private:
+    using PerPixel = std::array<bool, KeptTile::pixels>;
+
     template <class Visit>
     void for_pixels(Index tile, const Visit& visit) const {
         const int left = state_.tiling.left(tile), top = state_.tiling.top(tile);
@@ -77,26 +83,42 @@ class TileUpdater {
         for (const ShadowRegion& region : changes_.shadows) actors_.shadows.push_back(&region);
     }
 
+    /// Whether what a sample gives may be another.
+    [[nodiscard]] bool is_touched(const KeptSample& sample) const {
+        if (look_at_all_ || sample.known == KeptSample::Known::nothing) return true;
+        return sample.known == KeptSample::Known::light &&
+               std::any_of(changed_shadows_.begin(), changed_shadows_.end(),
+                           [&](const ShadowRegion* region) { return region->holds(sample.position); });
+    }
+
     void update_first(Index tile, KeptTile& kept) {
         if (kept.first.empty()) kept.first.resize(KeptTile::pixels * few_);
         for_pixels(tile, [&](std::size_t pixel, int x, int y) {
             for (std::size_t k = 0; k < few_; ++k) {
                 KeptSample& sample = kept.first[pixel * few_ + k];
-                if (changes_.touch(tile, kept, sample, changed_shadows_))
-                    look_again(tile, kept, pixel, {&sample, x, y, k});
+                if (!is_touched(sample)) continue;
+                new_first_[pixel] = true;
+                tasks_.push_back({&sample, {x, y, k}});
             }
         });
         finish(kept);
+        for_pixels(tile, [&](std::size_t pixel, int, int) {
+            if (!new_first_[pixel]) return;
+            add_up(kept, std::span(kept.first).subspan(pixel * few_, few_), first_[pixel]);
+            kept.sums[pixel].first = first_[pixel].totals();
+        });
     }
 
     /// The further samples of pixels whose first ones ask for them.
     void update_further(Index tile, KeptTile& kept) {
-        std::array<bool, KeptTile::pixels> outdated{};
+        PerPixel outdated{};
         const std::size_t before = kept.further.size();
         for_pixels(tile, [&](std::size_t pixel, int, int) {
-            if (!changed_[pixel]) return;
-            const bool noisy = more_ > 0 && first_tally(kept, pixel).is_noisy(state_.config.noise);
+            first_light_[pixel] = light_of(first_shares(kept, pixel), lit_.irradiance);
+            const bool noisy =
+                more_ > 0 && kept.sums[pixel].first.is_noisy(state_.config.noise, first_light_[pixel]);
             outdated[pixel] = noisy && !kept.shows_further[pixel];
+            if (noisy != kept.shows_further[pixel]) new_further_[pixel] = true;
             kept.shows_further[pixel] = noisy;
             if (!noisy || kept.first_further[pixel] != no_index) return;
             kept.first_further[pixel] = static_cast<Index>(kept.further.size());
@@ -107,61 +129,92 @@ class TileUpdater {
             if (!kept.shows_further[pixel]) return;
             for (std::size_t k = 0; k < more_; ++k) {
                 KeptSample& sample = kept.further[kept.first_further[pixel] + k];
-                if (outdated[pixel] || changes_.touch(tile, kept, sample, changed_shadows_))
-                    look_again(tile, kept, pixel, {&sample, x, y, few_ + k});
+                if (!outdated[pixel] && !is_touched(sample)) continue;
+                new_further_[pixel] = true;
+                tasks_.push_back({&sample, {x, y, few_ + k}});
             }
         });
         finish(kept);
-    }
-
-    void look_again(Index tile, const KeptTile& kept, std::size_t pixel, const SampleTask& task) {
-        changed_[pixel] = true;
-        ++samples;
-        const bool sees_furniture = !actors_.may_cover && changes_.changed_cover[tile] == 0;
-        if (sees_furniture && task.sample->known == KeptSample::Known::light)
-            samples_.relight(kept, actors_, task);
-        else
-            tasks_.push_back(task);
+        for_pixels(tile, [&](std::size_t pixel, int, int) {
+            if (!new_further_[pixel]) return;
+            further_[pixel].clear();
+            if (kept.shows_further[pixel])
+                add_up(kept, std::span(kept.further).subspan(kept.first_further[pixel], more_),
+                       further_[pixel]);
+            kept.sums[pixel].further = further_[pixel].totals();
+        });
     }
 
     void finish(KeptTile& kept) {
+        samples += tasks_.size();
         samples_.update(kept, actors_, tasks_);
         samples_.finish();
         tasks_.clear();
     }
 
-    [[nodiscard]] PixelTally first_tally(const KeptTile& kept, std::size_t pixel) const {
-        PixelTally tally;
-        for (std::size_t k = 0; k < few_; ++k) {
-            const KeptSample& sample = kept.first[pixel * few_ + k];
-            tally.add(sample.radiance, sample.surface);
-        }
-        return tally;
+    void add_up(const KeptTile& kept, std::span<const KeptSample> of, PixelSum& sum) const {
+        sum.clear();
+        for (const KeptSample& sample : of) sum.add(samples_.light(kept, sample), lit_.confidence);
     }
 
-    [[nodiscard]] PixelTally tally_of(const KeptTile& kept, std::size_t pixel) const {
-        PixelTally tally = first_tally(kept, pixel);
-        if (!kept.shows_further[pixel]) return tally;
-        for (std::size_t k = 0; k < more_; ++k) {
-            const KeptSample& sample = kept.further[kept.first_further[pixel] + k];
-            tally.add(sample.radiance, sample.surface);
+    [[nodiscard]] std::span<const PatchShare> first_shares(const KeptTile& kept, std::size_t pixel) const {
+        if (new_first_[pixel]) return first_[pixel].patches();
+        const KeptPixel& sums = kept.sums[pixel];
+        return std::span(kept.shares).subspan(sums.begin, sums.first_end - sums.begin);
+    }
+    [[nodiscard]] std::span<const PatchShare> further_shares(const KeptTile& kept, std::size_t pixel) const {
+        if (new_further_[pixel]) return further_[pixel].patches();
+        const KeptPixel& sums = kept.sums[pixel];
+        return std::span(kept.shares).subspan(sums.first_end, sums.end - sums.first_end);
+    }
+
+    /// The tile's shares, where some are new.
+    void put_together(KeptTile& kept) {
+        const auto is_set = [](bool is) { return is; };
+        if (std::none_of(new_first_.begin(), new_first_.end(), is_set) &&
+            std::none_of(new_further_.begin(), new_further_.end(), is_set))
+            return;
+        shares_.clear();
+        for (std::size_t pixel = 0; pixel < KeptTile::pixels; ++pixel) {
+            const auto first = first_shares(kept, pixel), further = further_shares(kept, pixel);
+            KeptPixel& sums = kept.sums[pixel];
+            sums.begin = static_cast<std::uint32_t>(shares_.size());
+            shares_.insert(shares_.end(), first.begin(), first.end());
+            sums.first_end = static_cast<std::uint32_t>(shares_.size());
+            shares_.insert(shares_.end(), further.begin(), further.end());
+            sums.end = static_cast<std::uint32_t>(shares_.size());
         }
-        return tally;
+        kept.shares.assign(shares_.begin(), shares_.end());
+        new_first_.fill(false);
+        new_further_.fill(false);
+    }
+
+    void light(const KeptTile& kept, std::size_t pixel, int x, int y) {
+        ++pixels;
+        const KeptPixel& sums = kept.sums[pixel];
+        state_.picture.at(x, y) = mean_of(sums.first, first_light_[pixel], sums.further,
+                                          light_of(further_shares(kept, pixel), lit_.irradiance));
     }
 
     KeptPictureState& state_;
+    const LitWorld& lit_;
     const PictureChanges& changes_;
     SampleUpdater samples_;
     TileActors actors_;
     std::vector<const ShadowRegion*> changed_shadows_;
     std::vector<SampleTask> tasks_;
-    std::size_t few_, more_;                        // samples of every pixel, and of noisy ones besides
-    std::array<bool, KeptTile::pixels> changed_{};  // pixels of the tile at hand
+    std::size_t few_, more_;  // samples of every pixel, and of noisy ones besides
+    // Of the tile at hand.
+    bool look_at_all_ = false;
+    PerPixel new_first_{}, new_further_{};  // sums that are made anew
+    std::array<PixelSum, KeptTile::pixels> first_, further_;
+    std::array<Rgb, KeptTile::pixels> first_light_{};  // by patches
+    std::vector<PatchShare> shares_;
 };
 
 /// All that is kept, so that memory is known before it is asked for: as many pixels are noisy as usual.
 bool fits(const CameraView& view, const KeptPictureConfig& config) {
-    constexpr double noisy_share = 0.4, bytes_per_sample = 130;
+    constexpr double noisy_share = 0.4, bytes_per_sample = 140;
     const double samples =
         config.picture.samples_per_pixel + noisy_share * static_cast<double>(further_count(config.picture));
     return samples * bytes_per_sample * view.width * view.height <= static_cast<double>(config.most_bytes);
@@ -196,19 +249,19 @@ PictureUpdate step(KeptPictureState& state, const CameraView& view, const LitWor
         LitWorld shown = lit;
         shown.irradiance = state.irradiance;
         shown.confidence = state.confidence;
-        const SobolPoints camera_points(most_samples(config.picture));
+        const CameraSamples camera(state.view, config.picture);
         const ShadowLines lines(shown, config.picture);
-        std::atomic<std::uint64_t> rays = 0, samples = 0, tiles = 0;
+        std::atomic<std::uint64_t> rays = 0, samples = 0, pixels = 0;
         context.for_chunks(state.tiles.size(), tiles_per_chunk, [&](std::size_t begin, std::size_t end) {
-            TileUpdater updater(state, shown, changes, camera_points, lines);
+            TileUpdater updater(state, shown, changes, camera, lines);
             for (std::size_t t = begin; t < end; ++t) updater.update(static_cast<Index>(t));
             rays += updater.rays_traced();
             samples += updater.samples;
-            tiles += updater.changed_tiles;
+            pixels += updater.pixels;
         });
         update.rays_traced = rays;
         update.samples = samples;
-        update.changed_tiles = tiles;
+        update.pixels = pixels;
     }
     state.whole = true;
     return update;

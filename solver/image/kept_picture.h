@@ -22,14 +22,14 @@ struct KeptPictureConfig {
 
 /// What one update did.
 struct PictureUpdate {
-    bool anew = false;                ///< nothing could be kept
-    std::uint64_t samples = 0;        ///< looked at
-    std::uint64_t rays_traced = 0;    ///< of cameras and shadows
-    std::uint64_t changed_tiles = 0;  ///< with samples looked at; see PictureTiles
+    bool anew = false;              ///< nothing could be kept
+    std::uint64_t samples = 0;      ///< looked at
+    std::uint64_t pixels = 0;       ///< lit again, with samples looked at or without
+    std::uint64_t rays_traced = 0;  ///< of cameras and shadows
 };
 
 /// A picture and what is needed to bring it to another time: by camera sample what the furniture shows there.
-/// About 130 bytes a sample. One thread at a time.
+/// About 140 bytes a sample. One thread at a time.
 struct KeptPictureState {
     Picture picture;
     bool whole = false;  ///< `picture` is what the rest says; not so after a stop or before the first step

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "solver/image/seen_point.h"
 #include "solver/image/surface_light.h"
 
 namespace afterglow {
@@ -19,18 +18,6 @@ Rgb emitted_by(const LitWorld& lit, const KeptSample& sample) {
     if (sample.triangle == no_index) return lit.world->background;
     const Index material = lit.world->bodies[furniture].triangles[sample.triangle].material;
     return emitted_by(lit.materials[material], sample.side);
-}
-
-/// As Interpolation::value, to the bit.
-Rgb interpolated(const LitWorld& lit, std::span<const PatchWeight> weights) {
-    Rgb sum(0);
-    float weight = 0;
-    for (const PatchWeight& entry : weights) {
-        const float w = entry.weight * lit.confidence[entry.patch];
-        sum += w * lit.irradiance[entry.patch];
-        weight += w;
-    }
-    return weight > 0 ? sum / weight : Rgb(0);
 }
 
 bool any_holds(const TileActors& actors, const Vec3& position) {
@@ -50,14 +37,23 @@ void KeptTile::note_patches() {
 
 std::size_t KeptTile::bytes() const {
     return sizeof(KeptTile) + (first.capacity() + further.capacity()) * sizeof(KeptSample) +
-           weights.capacity() * sizeof(PatchWeight) + patches.capacity() * sizeof(Index);
+           weights.capacity() * sizeof(PatchWeight) + shares.capacity() * sizeof(PatchShare) +
+           patches.capacity() * sizeof(Index);
 }
 
-SampleUpdater::SampleUpdater(const CameraView& view, const LitWorld& lit, const PictureConfig& config,
-                             const SobolPoints& camera_points, const ShadowLines& lines)
-    : view_(view), lit_(lit), config_(config), camera_(camera_points), lines_(lines) {
+SampleUpdater::SampleUpdater(const LitWorld& lit, const CameraSamples& camera, const ShadowLines& lines)
+    : lit_(lit), camera_(camera), lines_(lines), shadows_(lines) {
     on_actors_.lines = Lines::none_kept;
     remembered_.lines = Lines::past_furniture;
+}
+
+SampleLight SampleUpdater::light(const KeptTile& tile, const KeptSample& sample) const {
+    if (sample.on_actor == no_index)
+        return {emitted_by(lit_, sample), sample.reflectance, sample.direct_now, surface_of(lit_, sample),
+                std::span(tile.weights).subspan(sample.first_weight, sample.weights)};
+    const ActorPoint& point = actor_points_[sample.on_actor];
+    return {point.seen.emitted, point.seen.reflectance, point.direct, point.seen.surface,
+            std::span(point.patches).first(point.seen.stencil.count)};
 }
 
 void SampleUpdater::update(KeptTile& tile, const TileActors& actors, std::span<const SampleTask> tasks) {
@@ -69,29 +65,20 @@ void SampleUpdater::finish() {
     for (Queue* queue : {&on_furniture_, &on_actors_, &remembered_}) flush(*queue);
 }
 
-SampleNumber SampleUpdater::number_of(const SampleTask& task) const {
-    const auto pixel = static_cast<std::uint64_t>(task.y) * static_cast<std::uint64_t>(view_.width) +
-                       static_cast<std::uint64_t>(task.x);
-    return {mixed(config_.seed, pixel), task.k};
-}
-
-Ray SampleUpdater::ray_of(const SampleTask& task) const {
-    const Sample4 s = camera_.at(task.k, number_of(task).pixel_seed);
-    return view_.ray(static_cast<float>(task.x) + s[0], static_cast<float>(task.y) + s[1]);
-}
-
 /// What up to sixteen samples meet: each goes on to a queue, or is done.
 void SampleUpdater::meet(KeptTile& tile, const TileActors& actors, std::span<const SampleTask> tasks) {
     const bool all_known = std::all_of(tasks.begin(), tasks.end(), [](const SampleTask& t) {
         return t.sample->known == KeptSample::Known::light;
     });
     if (all_known && !actors.may_cover) {
-        for (const SampleTask& task : tasks) recall(tile, actors, task);
+        for (const SampleTask& task : tasks) recall(actors, task);
         return;
     }
     RayPacket rays;
-    rays.count = static_cast<Index>(tasks.size());
-    for (std::size_t lane = 0; lane < tasks.size(); ++lane) rays.set(lane, ray_of(tasks[lane]));
+    std::array<CameraSample, lanes> samples;
+    std::array<SampleNumber, lanes> numbers;
+    for (std::size_t lane = 0; lane < tasks.size(); ++lane) samples[lane] = tasks[lane].which;
+    camera_.rays(samples, tasks.size(), rays, numbers);
     meet_furniture(tasks, rays);
     HitPacket hits{};
     if (actors.may_cover) {
@@ -105,7 +92,7 @@ void SampleUpdater::meet(KeptTile& tile, const TileActors& actors, std::span<con
         if (hits[lane].body != no_index)
             look_at_actor(tasks[lane], rays.ray(lane), hits[lane]);
         else if (tasks[lane].sample->known == KeptSample::Known::light)
-            recall(tile, actors, tasks[lane]);
+            recall(actors, tasks[lane]);
         else
             look_at_furniture(tile, actors, tasks[lane], rays.ray(lane));
     }
@@ -142,57 +129,37 @@ void SampleUpdater::look_at_furniture(KeptTile& tile, const TileActors& actors, 
     KeptSample& sample = *task.sample;
     const SeenPoint seen = look_at(lit_, ray, sample.hit());
     sample.known = KeptSample::Known::light;
+    sample.on_actor = no_index;
     sample.emits = seen.emitted != Rgb(0);
     sample.reflectance = seen.reflectance;
-    sample.surface = seen.surface;
     sample.first_weight = static_cast<std::uint32_t>(tile.weights.size());
     sample.weights = static_cast<std::uint8_t>(seen.stencil.count);
     for (std::size_t k = 0; k < seen.stencil.count; ++k)
         tile.weights.push_back({seen.stencil.patch[k], seen.stencil.weight[k]});
-    if (!seen.takes_light()) {
-        sample.radiance = seen.emitted;
-        return;
-    }
+    if (!seen.takes_light()) return;
     sample.position = seen.position;
     tile.positions.add(seen.position);
-    add(on_furniture_, {task, seen.emitted, seen.reflectance,
-                        Interpolation::value(seen.stencil, lit_.irradiance, lit_.confidence), seen.position,
-                        seen.normal, any_holds(actors, seen.position)});
+    add(on_furniture_, {task, seen.position, seen.normal, any_holds(actors, seen.position)});
 }
 
 /// A sample that sees the furniture again, or still.
-void SampleUpdater::recall(const KeptTile& tile, const TileActors& actors, const SampleTask& task) {
-    task.sample->surface = surface_of(lit_, *task.sample);
-    relight(tile, actors, task);
-}
-
-void SampleUpdater::relight(const KeptTile& tile, const TileActors& actors, const SampleTask& task) {
+void SampleUpdater::recall(const TileActors& actors, const SampleTask& task) {
     KeptSample& sample = *task.sample;
-    const Rgb emitted = emitted_by(lit_, sample);
-    if (max_channel(sample.reflectance) <= 0) {
-        sample.radiance = emitted;
-        return;
-    }
-    const Rgb indirect =
-        interpolated(lit_, std::span(tile.weights).subspan(sample.first_weight, sample.weights));
+    sample.on_actor = no_index;
+    sample.direct_now = sample.direct;
+    if (max_channel(sample.reflectance) <= 0) return;
     const bool has_lines = sample.unblocked != 0 || lines_.count() > KeptSample::remembered_lines;
     if (has_lines && any_holds(actors, sample.position))
-        add(remembered_, {task, emitted, sample.reflectance, indirect, sample.position,
-                          shading_normal(lit_, sample.hit()), true});
-    else
-        sample.radiance = radiance_of(emitted, sample.reflectance, indirect, sample.direct);
+        add(remembered_, {task, sample.position, shading_normal(lit_, sample.hit()), true});
 }
 
 void SampleUpdater::look_at_actor(const SampleTask& task, const Ray& ray, const Hit& hit) {
-    const SeenPoint seen = look_at(lit_, ray, hit);
-    task.sample->surface = seen.surface;
-    if (!seen.takes_light()) {
-        task.sample->radiance = seen.emitted;
-        return;
-    }
-    add(on_actors_, {task, seen.emitted, seen.reflectance,
-                     Interpolation::value(seen.stencil, lit_.irradiance, lit_.confidence), seen.position,
-                     seen.normal, true});
+    task.sample->on_actor = static_cast<Index>(actor_points_.size());
+    ActorPoint& point = actor_points_.emplace_back();
+    point.seen = look_at(lit_, ray, hit);
+    for (std::size_t k = 0; k < point.seen.stencil.count; ++k)
+        point.patches[k] = {point.seen.stencil.patch[k], point.seen.stencil.weight[k]};
+    if (point.seen.takes_light()) add(on_actors_, {task, point.seen.position, point.seen.normal, true});
 }
 
 void SampleUpdater::add(Queue& queue, const Point& point) {
@@ -206,9 +173,12 @@ void SampleUpdater::flush(Queue& queue) {
     std::array<Rgb, lanes> now{}, alone{};
     std::array<std::uint32_t, lanes> unblocked{};
     for (std::size_t lane = 0; lane < queue.count; ++lane)
-        lines_.look_from(queue.points[lane].position, queue.points[lane].normal, lamps_[lane]);
+        shadows_.set(lane, queue.points[lane].position, queue.points[lane].normal,
+                     camera_.number(queue.points[lane].task.which));
+    shadows_.look(queue.count);
+    ShadowLinePacket lines;
     for (std::size_t i = 0; i < lines_.count(); ++i) {
-        const LinePacket lines = shadow_lines(queue, i);
+        shadows_.at(i, worth_tracing(queue, i), lines);
         if (lines.alive == 0) continue;
         const bool past_furniture = queue.lines == Lines::past_furniture && i < KeptSample::remembered_lines;
         // Where nothing is to be remembered, one look at everything does.
@@ -225,9 +195,11 @@ void SampleUpdater::flush(Queue& queue) {
         }
     }
     for (std::size_t lane = 0; lane < queue.count; ++lane) {
-        const Point& point = queue.points[lane];
-        KeptSample& sample = *point.task.sample;
-        sample.radiance = radiance_of(point.emitted, point.reflectance, point.interpolated, now[lane]);
+        KeptSample& sample = *queue.points[lane].task.sample;
+        if (queue.lines == Lines::none_kept)
+            actor_points_[sample.on_actor].direct = now[lane];
+        else
+            sample.direct_now = now[lane];
         if (queue.lines != Lines::unknown) continue;
         sample.direct = alone[lane];
         sample.unblocked = unblocked[lane];
@@ -235,32 +207,24 @@ void SampleUpdater::flush(Queue& queue) {
     queue.count = 0;
 }
 
-SampleUpdater::LinePacket SampleUpdater::shadow_lines(const Queue& queue, std::size_t i) {
-    LinePacket lines;
-    lines.rays.count = static_cast<Index>(queue.count);
-    for (std::size_t lane = 0; lane < queue.count; ++lane) {
-        const Point& point = queue.points[lane];
-        const bool blocked = queue.lines == Lines::past_furniture && i < KeptSample::remembered_lines &&
-                             ((point.task.sample->unblocked >> i) & 1U) == 0;
-        const ShadowLine line = blocked ? ShadowLine{} : lines_.at(i, number_of(point.task), lamps_[lane]);
-        lines.gain[lane] = line.irradiance;
-        const bool lit = line.brings_light();
-        // A ray that ends where it starts is switched off.
-        lines.rays.set(lane, {point.position, lit ? line.direction : Vec3(0, 0, 1), lit ? line.far_m : 0.0F});
-        if (lit) lines.alive |= 1U << lane;
-    }
-    return lines;
+/// Lanes whose line i does not end on the furniture, as far as is known.
+std::uint32_t SampleUpdater::worth_tracing(const Queue& queue, std::size_t i) const {
+    std::uint32_t lanes_wanted = (1U << queue.count) - 1;
+    if (queue.lines != Lines::past_furniture || i >= KeptSample::remembered_lines) return lanes_wanted;
+    for (std::size_t lane = 0; lane < queue.count; ++lane)
+        if (((queue.points[lane].task.sample->unblocked >> i) & 1U) == 0) lanes_wanted &= ~(1U << lane);
+    return lanes_wanted;
 }
 
-std::uint32_t SampleUpdater::occluded(const LinePacket& lines, Scope scope) {
+std::uint32_t SampleUpdater::occluded(const ShadowLinePacket& lines, Scope scope) {
     rays_traced_ += static_cast<std::uint64_t>(std::popcount(lines.alive));
     return lit_.caster->occluded(lines.rays, scope);
 }
 
 /// Of the lines `among` those that end on an actor.
-std::uint32_t SampleUpdater::occluded_by_actors(const Queue& queue, const LinePacket& all,
+std::uint32_t SampleUpdater::occluded_by_actors(const Queue& queue, const ShadowLinePacket& all,
                                                 std::uint32_t among) {
-    LinePacket lines = all;
+    ShadowLinePacket lines = all;
     lines.alive = 0;
     for (std::size_t lane = 0; lane < queue.count; ++lane) {
         if (((among >> lane) & 1U) != 0 && queue.points[lane].in_reach)

@@ -6,21 +6,17 @@
 #include <span>
 #include <vector>
 
-#include "solver/image/camera.h"
+#include "solver/image/camera_samples.h"
 #include "solver/image/picture_tiles.h"
+#include "solver/image/pixel_sum.h"
+#include "solver/image/seen_point.h"
 #include "solver/image/shadow_lines.h"
 #include "solver/image/shadow_region.h"
 
 namespace afterglow {
 
-/// A patch and its share of what is interpolated at a point.
-struct PatchWeight {
-    Index patch = no_index;
-    float weight = 0;
-};
-
-/// One camera sample of a picture that is kept: what it shows now, and what it would show without actors,
-/// which stays. Its ray follows from the pixel and is not stored.
+/// One camera sample of a picture that is kept: what it would show without actors, which stays, and how that
+/// is lit now. Its ray follows from the pixel and is not stored.
 struct KeptSample {
     enum class Known : std::uint8_t {
         nothing,  ///< never looked at
@@ -30,8 +26,8 @@ struct KeptSample {
     /// Shadow lines whose way past the furniture is remembered; those beyond are traced anew.
     static constexpr std::size_t remembered_lines = 32;
 
-    Rgb radiance{0};           ///< now
-    Index surface = no_index;  ///< now, as SeenPoint::surface
+    Rgb direct_now{0};          ///< irradiance by its shadow lines, W/m²
+    Index on_actor = no_index;  ///< while its tile is being updated: what it meets there, if an actor
 
     float distance = 0;  ///< to the furniture, metres
     Index triangle = no_index;
@@ -51,10 +47,19 @@ struct KeptSample {
     }
 };
 
+/// What a pixel's samples add up to; its shares stand in its tile's, those of the first samples before
+/// others.
+struct KeptPixel {
+    PixelTotals first, further;
+    std::uint32_t begin = 0, first_end = 0, end = 0;
+};
+
 /// The samples of a tile's pixels; pixels row by row, those outside the picture unused.
 struct KeptTile {
     static constexpr std::size_t pixels = PictureTiles::edge * PictureTiles::edge;
 
+    std::array<KeptPixel, pixels> sums;
+    std::vector<PatchShare> shares;             ///< of all pixels
     std::vector<KeptSample> first;              ///< of all pixels, pixel by pixel
     std::vector<KeptSample> further;            ///< of those that ever were noisy
     std::array<Index, pixels> first_further{};  ///< where a pixel's begin; no_index: none
@@ -78,24 +83,24 @@ struct TileActors {
 /// A sample to be looked at.
 struct SampleTask {
     KeptSample* sample = nullptr;
-    int x = 0, y = 0;   ///< its pixel
-    std::size_t k = 0;  ///< its number within the pixel
+    CameraSample which;
 };
 
 /// Brings samples up to date, sixteen at a time: each is traced against the furniture once, and from then on
-/// against the actors only, where these may come between. Gives the radiances that `render_picture` would.
-/// One thread at a time.
+/// against the actors only, where these may come between. One thread at a time.
 class SampleUpdater {
   public:
-    SampleUpdater(const CameraView& view, const LitWorld& lit, const PictureConfig& config,
-                  const SobolPoints& camera_points, const ShadowLines& lines);
+    SampleUpdater(const LitWorld& lit, const CameraSamples& camera, const ShadowLines& lines);
 
+    /// To be called before another tile's samples are updated.
+    void begin_tile() { actor_points_.clear(); }
     /// What the samples see now, whatever it was. Some are done only by `finish`.
     void update(KeptTile& tile, const TileActors& actors, std::span<const SampleTask> tasks);
-    /// Likewise, for a sample that knows its light and sees the furniture, before as now.
-    void relight(const KeptTile& tile, const TileActors& actors, const SampleTask& task);
     /// To be called before what has been updated is read.
     void finish();
+    /// What a sample gives to its pixel: one that has been updated since its tile began, or that sees the
+    /// furniture as it did before.
+    [[nodiscard]] SampleLight light(const KeptTile& tile, const KeptSample& sample) const;
     [[nodiscard]] std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
@@ -105,9 +110,14 @@ class SampleUpdater {
     /// A point whose shadow lines are to be traced.
     struct Point {
         SampleTask task;
-        Rgb emitted{0}, reflectance{0}, interpolated{0};
         Vec3 position{0}, normal{0};
         bool in_reach = true;  ///< of actors' shadows
+    };
+    /// What a sample meets on an actor.
+    struct ActorPoint {
+        SeenPoint seen;
+        std::array<PatchWeight, Stencil::most> patches;
+        Rgb direct{0};
     };
     /// Points that wait until sixteen can be traced together, all of one kind.
     struct Queue {
@@ -115,34 +125,24 @@ class SampleUpdater {
         std::array<Point, lanes> points;
         std::size_t count = 0;
     };
-    /// A shadow line of each of a queue's points; those without one are switched off.
-    struct LinePacket {
-        RayPacket rays;
-        std::array<Rgb, lanes> gain;
-        std::uint32_t alive = 0;
-    };
-
     void meet(KeptTile& tile, const TileActors& actors, std::span<const SampleTask> tasks);
     void meet_furniture(std::span<const SampleTask> tasks, const RayPacket& rays);
     void look_at_furniture(KeptTile& tile, const TileActors& actors, const SampleTask& task, const Ray& ray);
-    void recall(const KeptTile& tile, const TileActors& actors, const SampleTask& task);
+    void recall(const TileActors& actors, const SampleTask& task);
     void look_at_actor(const SampleTask& task, const Ray& ray, const Hit& hit);
-    [[nodiscard]] Ray ray_of(const SampleTask& task) const;
-    [[nodiscard]] SampleNumber number_of(const SampleTask& task) const;
 
     void add(Queue& queue, const Point& point);
     void flush(Queue& queue);
-    [[nodiscard]] LinePacket shadow_lines(const Queue& queue, std::size_t i);
-    std::uint32_t occluded(const LinePacket& lines, Scope scope);
-    std::uint32_t occluded_by_actors(const Queue& queue, const LinePacket& all, std::uint32_t among);
+    [[nodiscard]] std::uint32_t worth_tracing(const Queue& queue, std::size_t i) const;
+    std::uint32_t occluded(const ShadowLinePacket& lines, Scope scope);
+    std::uint32_t occluded_by_actors(const Queue& queue, const ShadowLinePacket& all, std::uint32_t among);
 
-    const CameraView& view_;
     const LitWorld& lit_;
-    const PictureConfig& config_;
-    const SobolPoints& camera_;
+    const CameraSamples& camera_;
     const ShadowLines& lines_;
     Queue on_furniture_, on_actors_, remembered_;
-    std::array<DirectLight::Seen, lanes> lamps_;
+    ShadowPacket shadows_;
+    std::vector<ActorPoint> actor_points_;  // of the tile at hand
     std::uint64_t rays_traced_ = 0;
 };
 

@@ -67,10 +67,12 @@ std::vector<char> changed_patches(KeptPictureState& state, const LitWorld& lit, 
     for (std::size_t p = 0; p < changed.size(); ++p) {
         const Rgb difference = glm::abs(lit.irradiance[p] - state.irradiance[p]);
         const float other_share = std::abs(lit.confidence[p] - state.confidence[p]);
-        if (max_channel(difference) <= allowed && other_share <= tolerance) continue;
+        const bool lit_otherwise = max_channel(difference) > allowed,
+                   counts_otherwise = other_share > tolerance;
+        if (!lit_otherwise && !counts_otherwise) continue;
+        if (counts_otherwise) state.confidence[p] = lit.confidence[p];
         state.irradiance[p] = lit.irradiance[p];
-        state.confidence[p] = lit.confidence[p];
-        changed[p] = 1;
+        changed[p] = static_cast<char>((lit_otherwise ? 1 : 0) | (counts_otherwise ? 2 : 0));
         any = true;
     }
     if (!any) changed.clear();
@@ -150,15 +152,9 @@ bool PictureChanges::touch(Index tile, const KeptTile& kept) const {
                        [&](const ShadowRegion& region) { return region.meets(kept.positions); });
 }
 
-bool PictureChanges::touch(Index tile, const KeptTile& kept, const KeptSample& sample,
-                           std::span<const ShadowRegion* const> changed_shadows_here) const {
-    if (everything || changed_cover[tile] != 0 || sample.known == KeptSample::Known::nothing) return true;
-    if (sample.known != KeptSample::Known::light) return false;  // under an actor that stays
-    if (!patches.empty())
-        for (std::size_t k = 0; k < sample.weights; ++k)
-            if (patches[kept.weights[sample.first_weight + k].patch] != 0) return true;
-    return std::any_of(changed_shadows_here.begin(), changed_shadows_here.end(),
-                       [&](const ShadowRegion* region) { return region->holds(sample.position); });
+bool PictureChanges::weigh_otherwise(const KeptTile& kept) const {
+    return !patches.empty() && std::any_of(kept.patches.begin(), kept.patches.end(),
+                                           [&](Index p) { return (patches[p] & 2) != 0; });
 }
 
 bool can_be_kept(const KeptPictureState& state, const CameraView& view, const LitWorld& lit,

@@ -11,14 +11,14 @@ struct PictureChanges {
     std::vector<char> changed_cover;    ///< by tile: actors that changed may cover it now or did before
     std::vector<ShadowRegion> shadows;  ///< of all actors now
     std::vector<ShadowRegion> changed_shadows;  ///< of actors that moved, there and back
-    std::vector<char> patches;                  ///< by patch: its irradiance is another; empty: none is
+    /// By patch: its irradiance is another (bit 0), or its confidence (bit 1). Empty: none is.
+    std::vector<char> patches;
 
     [[nodiscard]] bool any() const;
     /// Whether a tile may show something else.
     [[nodiscard]] bool touch(Index tile, const KeptTile& kept) const;
-    /// Whether a sample may, `changed_shadows_here` being those that meet its tile.
-    [[nodiscard]] bool touch(Index tile, const KeptTile& kept, const KeptSample& sample,
-                             std::span<const ShadowRegion* const> changed_shadows_here) const;
+    /// Whether patches that make up a tile count for more or less than before.
+    [[nodiscard]] bool weigh_otherwise(const KeptTile& kept) const;
 };
 
 /// Whether samples of a state are of any use for a picture of this camera, configuration and light.

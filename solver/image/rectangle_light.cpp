@@ -53,15 +53,19 @@ RectangleView::RectangleView(const RectangleLight& light, const Vec3& from)
     const float height = -glm::dot(to_corner, normal_area_) / (length_u * length_v);
     in_front_ = height > 0;
     if (!in_front_) return;
-    const float diagonal = std::sqrt(length_u * length_u + length_v * length_v);
     const Vec3 to_centre = to_corner + 0.5F * (light.edge_u + light.edge_v);
-    if (glm::dot(to_centre, to_centre) > far_diagonals * far_diagonals * diagonal * diagonal) return;
+    if (glm::dot(to_centre, to_centre) > near_squared(light)) return;
 
     const double x0 = static_cast<double>(glm::dot(to_corner, x_axis_));
     const double y0 = static_cast<double>(glm::dot(to_corner, y_axis_));
     const Spherical seen(x0, x0 + static_cast<double>(length_u), y0, y0 + static_cast<double>(length_v),
                          -static_cast<double>(height));
     if (seen.solid_angle > 1e-9) near_ = seen;
+}
+
+float RectangleView::near_squared(const RectangleLight& light) {
+    return far_diagonals * far_diagonals *
+           (glm::dot(light.edge_u, light.edge_u) + glm::dot(light.edge_v, light.edge_v));
 }
 
 RectanglePoint RectangleView::by_area(float s, float t) const {

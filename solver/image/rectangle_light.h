@@ -32,6 +32,8 @@ class RectangleView {
   public:
     RectangleView(const RectangleLight& light, const Vec3& from);
 
+    /// Squared distance to the centre, m², up to which points are chosen in solid angle.
+    [[nodiscard]] static float near_squared(const RectangleLight& light);
     /// As `point_seen`.
     [[nodiscard]] RectanglePoint at(float s, float t) const;
 

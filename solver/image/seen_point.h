@@ -22,10 +22,4 @@ SeenPoint look_at(const LitWorld& lit, const Ray& ray, const Hit& hit);
 /// Unit normal for shading where a ray met a surface, on the side that is seen. Thread-safety: pure.
 Vec3 shading_normal(const LitWorld& lit, const Hit& hit);
 
-/// Radiance, W/m²/sr, of what emits and reflects under two irradiances, W/m².
-inline Rgb radiance_of(const Rgb& emitted, const Rgb& reflectance, const Rgb& interpolated,
-                       const Rgb& direct) {
-    return emitted + reflectance / pi * (interpolated + direct);
-}
-
 }  // namespace afterglow

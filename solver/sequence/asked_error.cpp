@@ -31,6 +31,17 @@ constexpr std::array<Measured, 6> measured{{
 // its inverse square.
 constexpr double finest_tried_error = 0.005;
 
+// Of the pictures that all of this was measured with; and what the samples of pixels with edges grow by at
+// most in smaller ones.
+constexpr double measured_pixels = 256.0 * 256.0;
+constexpr double most_edge_growth = 4;
+
+/// How many more samples pixels with edges need than in a picture of the measured size. Their squared error
+/// goes with the inverse of their samples, and their share of the picture with the inverse of its edge.
+float edge_growth(double pixels) {
+    return static_cast<float>(std::clamp(std::sqrt(measured_pixels / pixels), 1.0, most_edge_growth));
+}
+
 /// A power law through two values; `t` is 0 at the first and 1 at the second.
 float between(float first, float second, double t) {
     return static_cast<float>(first * std::pow(static_cast<double>(second) / first, t));
@@ -46,7 +57,7 @@ bool error_settles_all(const SequenceConfig& config) {
     return config.asked_error && !config.rays_per_patch && !config.patch_size_m;
 }
 
-QualityLevel level_for_error(double asked) {
+QualityLevel level_for_error(double asked, double pixels) {
     const double error = std::clamp(asked, finest_tried_error, measured.front().error);
     std::size_t k = 1;
     while (k + 1 < measured.size() && error < measured[k].error) ++k;
@@ -62,7 +73,8 @@ QualityLevel level_for_error(double asked) {
     level.certificate = asked;
     level.picture_tolerance = static_cast<float>(0.1 * error);
     level.picture.samples_per_pixel = whole_between(a.samples, b.samples, t);
-    level.picture.most_samples_per_pixel = whole_between(a.most_samples, b.most_samples, t);
+    const float growth = edge_growth(pixels);
+    level.picture.most_samples_per_pixel = whole_between(growth * a.most_samples, growth * b.most_samples, t);
     level.picture.light_samples_per_point = whole_between(a.light_samples, b.light_samples, t);
     level.picture.noise = between(a.noise, b.noise, t);
     level.probes.parts = whole_between(a.probe_parts, b.probe_parts, t);

@@ -15,9 +15,11 @@ inline constexpr double finest_promised_error = 0.007;
 bool error_settles_all(const SequenceConfig& config);
 
 /// The cheapest patches, lines and samples known to keep a picture's relative root mean square error at or
-/// below `asked`, in (0, 1). Between measured ones, all numbers are interpolated as powers of the error.
+/// below `asked`, in (0, 1), of a picture of that many pixels. Between measured ones, all numbers are
+/// interpolated as powers of the error. Edges take a share of a picture that goes with the inverse of its
+/// own edge, so below the size that was measured pixels with edges get more samples.
 /// Errors above a tenth are given what a tenth needs: coarser patches save nothing that shows. Its picture's
 /// and probes' seeds are left as they are. Thread-safety: pure. Source: measured, see README.md.
-QualityLevel level_for_error(double asked);
+QualityLevel level_for_error(double asked, double pixels);
 
 }  // namespace afterglow

@@ -221,8 +221,11 @@ void FrameRefinement::follow_layers(double asked_error, const Context& context) 
     const ResidualProblem problem{kept->matrix, parts_.mesh.area_m2, emission_, reflectance_, outside_};
     if (kept->state)
         afterglow::follow(*kept->state, problem, changes, context);
-    else
+    else if (parts_.radiosity_before.empty())
         kept->state = make_residual_state(problem, context);
+    else
+        kept->state = make_residual_state(problem, parts_.radiosity_before, context);
+    parts_.radiosity_before.clear();
     ResidualConfig config;
     config.asked_error = asked_error;
     const std::uint64_t pushes_before = kept->state->pushes;
@@ -292,7 +295,8 @@ LitWorld FrameRefinement::lit_by(std::span<const Rgb> irradiance) const {
 Picture FrameRefinement::preliminary_picture(int width, int height, const Context& context) {
     const Stopwatch watch;
     context.report(0.8, "rendering the picture");
-    const auto irradiance = irradiance_with_ambient(problem(), *light_);
+    // A solution that follows the last frame has no light on its way that would show.
+    const auto irradiance = light_ ? irradiance_with_ambient(problem(), *light_) : irradiance_;
     const CameraView view = view_at(parts_.camera, time_s_, width, height);
     Picture made = render_picture(view, lit_by(irradiance), {1, 1, 0, 0, parts_.config.seed},
                                   statistics_.rays_traced, context);

@@ -39,7 +39,9 @@ QualityLevel level_for(Quality quality) {
 
 QualityLevel level_of(const SequenceConfig& config) {
     QualityLevel level =
-        error_settles_all(config) ? level_for_error(*config.asked_error) : level_for(config.quality);
+        error_settles_all(config)
+            ? level_for_error(*config.asked_error, static_cast<double>(config.width) * config.height)
+            : level_for(config.quality);
     if (config.asked_error) level.certificate = *config.asked_error;
     // Where each frame's light is solved anew, nothing of its picture depends on the frames before.
     if (config.solution == Solution::progressive) level.picture_tolerance = 0;

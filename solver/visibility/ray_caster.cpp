@@ -1,6 +1,7 @@
 #include "solver/visibility/ray_caster.h"
 
 #include <cstring>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,8 +40,8 @@ using Geometry = Owned<RTCGeometry, rtcReleaseGeometry>;
 void check(RTCDevice device) {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_NONE) return;
-    throw Error(error == RTC_ERROR_OUT_OF_MEMORY ? ErrorKind::too_large : ErrorKind::io, "",
-                "the ray tracer failed with error " + std::to_string(error));
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw Error(ErrorKind::io, "", "the ray tracer failed with error " + std::to_string(error));
 }
 
 /// An acceleration structure over one body, in the body's frame.

@@ -62,8 +62,8 @@ enum class Scope {
 /// Thread-safety: tracing is const and may come from any number of threads, but not during set_poses.
 class RayCaster {
   public:
-    /// Keeps a copy of nothing but the geometry. Errors: too_large where memory for the structure cannot be
-    /// had.
+    /// Keeps a copy of nothing but the geometry. Errors: std::bad_alloc where memory for the structure cannot
+    /// be had.
     explicit RayCaster(const World& world);
     RayCaster(RayCaster&&) noexcept;
     RayCaster& operator=(RayCaster&&) noexcept;
