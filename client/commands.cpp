@@ -73,6 +73,9 @@ ExitCode run_command(const Session& session) {
         [&](const ListCommand&) { return run_list(session); },
         [&](const ShowCommand& show) { return run_show(session, show); },
         [&](const StepCommand& step) { return run_step(session, step); },
+        [&](const EditCommand& edit) { return run_edit(session, edit); },
+        [&](const EditableCommand& editable) { return run_editable(session, editable); },
+        [&](const PriorityCommand& priority) { return run_priority(session, priority); },
         [&](const RemoveCommand& remove) { return run_remove(session, remove); },
         [&](const DoctorCommand&) { return run_doctor(session); },
         [&](const CompletionCommand&) { return run_completion(session); },
@@ -88,7 +91,7 @@ MovieFrames frames_to_show(const Json& job_json, const Job& job, const GetComman
         throw ClientError(ExitCode::bad_input, "--movie",
                           "only " + frames_text(job) + " frames are finished; wait for the job to end");
     constexpr double usual_rate = 24;
-    const double rate = find_number(find_member(job_json, "settings"), "fps").value_or(usual_rate);
+    const double rate = find_number(job_json, "frames_per_second").value_or(usual_rate);
     return {command.out, job.first_frame, rate};
 }
 
@@ -151,6 +154,19 @@ ExitCode run_step(const Session& session, const StepCommand& command) {
     return ExitCode::ok;
 }
 
+ExitCode run_priority(const Session& session, const PriorityCommand& command) {
+    HttpConnection connection = connect(session);
+    const Json body =
+        json_reply(connection.patch(job_path(command.id), to_line({{"priority", command.priority}}),
+                                    "application/merge-patch+json"),
+                   connection.server());
+    if (session.options.format == OutputFormat::json)
+        session.out << to_line(body) << '\n';
+    else
+        session.out << "job " << one_line(command.id) << " has priority " << command.priority << '\n';
+    return ExitCode::ok;
+}
+
 ExitCode run_remove(const Session& session, const RemoveCommand& command) {
     HttpConnection connection = connect(session);
     const bool is_trial = command.removal == Removal::tried;
@@ -161,7 +177,7 @@ ExitCode run_remove(const Session& session, const RemoveCommand& command) {
         return ExitCode::ok;
     }
     session.out << "job " << one_line(command.id) << (is_trial ? " would be removed" : " removed");
-    if (const auto bytes = find_number(body, "bytes")) session.out << ": " << *bytes / 1e6 << " MB";
+    if (const auto bytes = find_number(body, "bytes")) session.out << ": " << spoken_bytes(*bytes);
     session.out << '\n';
     return ExitCode::ok;
 }

@@ -35,6 +35,11 @@ ExitCode run_get(const Session& session, const GetCommand& command);
 ExitCode run_list(const Session& session);
 ExitCode run_show(const Session& session, const ShowCommand& command);
 ExitCode run_step(const Session& session, const StepCommand& command);
+ExitCode run_priority(const Session& session, const PriorityCommand& command);
+/// Edits a job as it is now. Errors: also bad_input where it was edited meanwhile, unless that is to be
+/// retried.
+ExitCode run_edit(const Session& session, const EditCommand& command);
+ExitCode run_editable(const Session& session, const EditableCommand& command);
 ExitCode run_remove(const Session& session, const RemoveCommand& command);
 /// One line for each thing that is checked. Returns no_server where the server is of no use.
 ExitCode run_doctor(const Session& session);

@@ -23,21 +23,23 @@ FrameFetcher::FrameFetcher(HttpConnection& connection, std::filesystem::path fol
 
 std::vector<std::filesystem::path> FrameFetcher::fetch(const FrameImage& image) {
     std::vector<std::filesystem::path> files;
-    if (type_ != PictureType::exr) files.push_back(fetch_file(image.frame, "png", image.png));
-    if (type_ != PictureType::png) files.push_back(fetch_file(image.frame, "exr", image.exr));
+    if (type_ != PictureType::exr) files.push_back(fetch_file(image, "png", image.png));
+    if (type_ != PictureType::png) files.push_back(fetch_file(image, "exr", image.exr));
     return files;
 }
 
-std::filesystem::path FrameFetcher::fetch_file(int frame, const std::string& ending,
+std::filesystem::path FrameFetcher::fetch_file(const FrameImage& image, const std::string& ending,
                                                const std::string& path) {
     // Only a path on this server: what it sends must not make us ask another.
     if (!path.starts_with('/') || path.starts_with("//"))
         throw ClientError(ExitCode::no_server, connection_.server(),
-                          "names no path for the " + ending + " of frame " + std::to_string(frame));
-    auto file = folder_ / frame_file_name(frame, ending);
+                          "names no path for the " + ending + " of frame " + std::to_string(image.frame));
+    auto file = folder_ / frame_file_name(image.frame, ending);
     std::error_code missing;
     const auto size = std::filesystem::file_size(file, missing);
-    if (!missing && connection_.head(path).header("Content-Length") == std::to_string(size)) {
+    // An edit may leave a picture as long as it was.
+    if (!missing && image.job_revision == 0 &&
+        connection_.head(path).header("Content-Length") == std::to_string(size)) {
         ++present_;
         return file;
     }

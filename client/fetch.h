@@ -14,7 +14,7 @@ namespace afterglow::client {
 std::string frame_file_name(int frame, const std::string& ending);
 
 /// Fetches pictures of finished frames into one folder, each file whole or not at all. A file whose length is
-/// that of the server's picture is taken as complete and left alone.
+/// that of the server's picture is taken as complete and left alone, unless the job has been edited.
 class FrameFetcher {
   public:
     /// The connection must outlive the fetcher. The folder is made when the first file is written.
@@ -28,7 +28,8 @@ class FrameFetcher {
     [[nodiscard]] int present() const { return present_; }
 
   private:
-    std::filesystem::path fetch_file(int frame, const std::string& ending, const std::string& path);
+    std::filesystem::path fetch_file(const FrameImage& image, const std::string& ending,
+                                     const std::string& path);
 
     HttpConnection& connection_;
     std::filesystem::path folder_;

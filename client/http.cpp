@@ -132,6 +132,18 @@ HttpReply HttpConnection::post(const std::string& path, std::string_view body,
         library_->client.Post(path, library_headers(headers), body.data(), body.size(), content_type), *this);
 }
 
+HttpReply HttpConnection::put(const std::string& path, std::string_view body,
+                              const std::string& content_type) {
+    interrupt_.check();
+    return Library::take(library_->client.Put(path, body.data(), body.size(), content_type), *this);
+}
+
+HttpReply HttpConnection::patch(const std::string& path, std::string_view body,
+                                const std::string& content_type) {
+    interrupt_.check();
+    return Library::take(library_->client.Patch(path, body.data(), body.size(), content_type), *this);
+}
+
 HttpReply HttpConnection::remove(const std::string& path) {
     interrupt_.check();
     return Library::take(library_->client.Delete(path), *this);

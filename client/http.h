@@ -62,6 +62,8 @@ class HttpConnection {
     HttpReply head(const std::string& path);
     HttpReply post(const std::string& path, std::string_view body, const std::string& content_type,
                    const HttpHeaders& headers = {});
+    HttpReply put(const std::string& path, std::string_view body, const std::string& content_type);
+    HttpReply patch(const std::string& path, std::string_view body, const std::string& content_type);
     /// DELETE.
     HttpReply remove(const std::string& path);
     /// Passes the body of a 200 reply on as it arrives, until it ends, breaks off or the sink says stop; the

@@ -75,7 +75,9 @@ FrameImage read_frame_image(const Json& json, const std::string& place) {
     FrameImage image;
     image.frame = *frame;
     image.revision = find_int(json, "revision").value_or(0);
-    image.stage = is_true(json, "final") ? FrameImage::Stage::final : FrameImage::Stage::preliminary;
+    image.job_revision = find_int(json, "job_revision").value_or(0);
+    if (is_true(json, "final"))
+        image.stage = is_true(json, "stale") ? FrameImage::Stage::stale : FrameImage::Stage::final;
     image.residual = find_number(json, "residual");
     image.png = find_string(json, "png").value_or(find_string(json, "url").value_or(""));
     image.exr = find_string(json, "exr").value_or("");

@@ -55,10 +55,12 @@ Job read_job(const Json& json, const std::string& place);
 struct FrameImage {
     int frame = 0;
     int revision = 0;
-    enum class Stage { preliminary, final } stage = Stage::preliminary;
+    /// Stale: a final one from before an edit that changed its frame.
+    enum class Stage { preliminary, final, stale } stage = Stage::preliminary;
     std::optional<double> residual;
     std::string png;  ///< path on the server; empty where there is none
     std::string exr;
+    int job_revision = 0;  ///< how often the job had been edited that it shows
 };
 /// Reads an entry of `/frames` or an `image` event. Errors: no_server where the frame is missing or negative.
 FrameImage read_frame_image(const Json& json, const std::string& place);

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "client/edit_options.h"
 #include "client/file.h"
 #include "client/http.h"
 
@@ -22,10 +23,12 @@ struct Raw {
     SubmitCommand submit;
     bool watch = false;
     std::string id;
+    int priority = 0;
     std::string out;
     std::string movie;
     PictureType type = PictureType::both;
     bool is_trial = false;
+    EditText edit;
     std::map<std::string, CLI::App*> commands;
 };
 
@@ -114,6 +117,13 @@ void define(CLI::App& app, Raw& raw) {
     with_id("resume", "Let a paused job go on");
     with_id("cancel", "Cancel a job; its finished frames stay");
     with_id("retry", "Let a failed or cancelled job go on from its last finished frame");
+    define_edit(add_command(app, raw, "edit", "Change a job that has been submitted"), raw.edit);
+    with_id("priority", "Let a job go before others, or after them");
+    raw.commands.at("priority")
+        ->add_option("PRIORITY", raw.priority, "-10 to 10; higher goes first, jobs begin with 0")
+        ->required()
+        ->check(CLI::Range(-10, 10))
+        ->type_name("");
     with_id("rm", "Remove a job that has ended, with its pictures");
     raw.commands.at("rm")->add_flag("--dry-run", raw.is_trial, "Say what would go, and leave it");
     add_command(app, raw, "doctor", "Check the way to the server, and what else is needed");
@@ -135,9 +145,11 @@ Command command_of(Raw& raw) {
         if (raw.watch || raw.submit.out) raw.submit.follow = Follow::watch;
         return std::move(raw.submit);
     }
+    if (chosen("priority")) return PriorityCommand{raw.id, raw.priority};
     if (chosen("ls")) return ListCommand{};
     if (chosen("doctor")) return DoctorCommand{};
     if (chosen("completion")) return CompletionCommand{};
+    if (chosen("edit")) return edit_command(*raw.commands.at("edit"), raw.edit);
     // An empty id would turn the path of one job into that of all jobs.
     if (raw.id.empty()) throw ClientError(ExitCode::bad_input, "ID", "must not be empty");
     if (chosen("watch")) return WatchCommand{raw.id};
@@ -180,7 +192,11 @@ Options parse_options(const std::vector<std::string>& arguments, const Environme
         std::ostringstream out;
         std::ostringstream err;
         if (app.exit(error, out, err) == 0) return {"", "", "", OutputFormat::text, HelpCommand{out.str()}};
-        throw ClientError(ExitCode::bad_input, "", std::string(error.what()) + " (see --help)");
+        std::string what = error.what();
+        // The library says of a word that is no command only that one is missing.
+        if (app.get_subcommands().empty() && !arguments.empty() && !arguments.front().starts_with('-'))
+            what = "there is no command \"" + arguments.front() + "\"";
+        throw ClientError(ExitCode::bad_input, "", what + " (see --help)");
     }
     Options options;
     const std::string fallback = environment.server.empty() ? "http://127.0.0.1:8080" : environment.server;
@@ -198,8 +214,13 @@ std::vector<CommandSyntax> command_syntax() {
     define(app, raw);
     std::vector<CommandSyntax> syntax;
     for (const CLI::App* command : app.get_subcommands({})) {
-        CommandSyntax& one = syntax.emplace_back(CommandSyntax{command->get_name(), {}});
-        for (const CLI::App* source : {command, static_cast<const CLI::App*>(&app)})
+        CommandSyntax& one = syntax.emplace_back(CommandSyntax{command->get_name(), {}, {}});
+        std::vector<const CLI::App*> sources{command, &app};
+        for (const CLI::App* kind : command->get_subcommands({})) {
+            one.kinds.push_back(kind->get_name());
+            sources.push_back(kind);
+        }
+        for (const CLI::App* source : sources)
             for (const CLI::Option* option : source->get_options())
                 for (const std::string& name : option->get_lnames())
                     if (std::ranges::find(one.options, "--" + name) == one.options.end())

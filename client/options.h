@@ -65,11 +65,33 @@ struct StepCommand {
     std::string id;
     Step step = Step::cancel;
 };
+struct PriorityCommand {
+    std::string id;
+    int priority = 0;  ///< −10 to 10; higher goes first
+};
 /// Whether `rm` removes, or only says what it would.
 enum class Removal { done, tried };
 struct RemoveCommand {
     std::string id;
     Removal removal = Removal::done;
+};
+/// Whether an edit is tried again where the job was edited between reading its revision and editing it.
+enum class OnConflict { fail, retry };
+/// A change of a job that has been submitted.
+struct EditCommand {
+    std::string id;
+    Json edits;                                 ///< as the interface has them
+    std::optional<std::filesystem::path> file;  ///< with a part of them, see `file_holds`
+    enum class FileHolds {
+        request,   ///< all of them, in place of `edits`
+        keys,      ///< translation and rotation of the path that is the only edit
+        geometry,  ///< of the object that the only edit adds
+    } file_holds = FileHolds::request;
+    OnConflict on_conflict = OnConflict::fail;
+};
+/// Shows what of a job can be edited.
+struct EditableCommand {
+    std::string id;
 };
 /// Says whether client and server can work together, and what to do where they cannot.
 struct DoctorCommand {};
@@ -80,7 +102,8 @@ struct HelpCommand {
     std::string text;
 };
 using Command = std::variant<HelpCommand, SubmitCommand, WatchCommand, GetCommand, ListCommand, ShowCommand,
-                             StepCommand, RemoveCommand, DoctorCommand, CompletionCommand>;
+                             StepCommand, PriorityCommand, EditCommand, EditableCommand, RemoveCommand,
+                             DoctorCommand, CompletionCommand>;
 
 struct Options {
     std::string server;  ///< as from parse_server_url
@@ -104,7 +127,8 @@ Options parse_options(const std::vector<std::string>& arguments, const Environme
 /// A command and the options it takes, for completion.
 struct CommandSyntax {
     std::string name;
-    std::vector<std::string> options;  ///< with their dashes
+    std::vector<std::string> options;  ///< with their dashes, those of its kinds included
+    std::vector<std::string> kinds;    ///< one of which must follow; empty: none
 };
 std::vector<CommandSyntax> command_syntax();
 

@@ -1,10 +1,12 @@
 #include <ostream>
 
 #include "client/commands.h"
+#include "client/content_hash.h"
 #include "client/file.h"
 #include "client/follow.h"
 #include "client/job.h"
 #include "client/problem.h"
+#include "client/scene_files.h"
 #include "client/text.h"
 
 namespace afterglow::client {
@@ -27,6 +29,22 @@ Json upload(HttpConnection& connection, const std::string& path, const std::stri
     return reply;
 }
 
+/// Uploads a scene with the files it refers to: those that the server does not have, then the list of them.
+Json upload_files(HttpConnection& connection, const SubmitCommand& command, const SceneFiles& files) {
+    Json list = Json::object();
+    for (const auto& [name, content] : files) {
+        const std::string hash = sha256(content);
+        list[name] = {{"sha256", hash}};
+        const std::string path = "/v1/blobs/" + hash;
+        if (connection.head(path).status == 200) continue;
+        const HttpReply reply = connection.put(path, content, "application/octet-stream");
+        json_reply(reply, connection.server(), NotFound::bad_input);
+    }
+    const Json manifest{{"main", command.scene.filename().string()}, {"files", std::move(list)}};
+    return upload(connection, "/v1/scenes" + scene_query(command), to_line(manifest),
+                  "application/vnd.afterglow.files+json");
+}
+
 void tell_warnings(const Session& session, WatchView& view, const std::vector<JobWarning>& warnings) {
     for (const JobWarning& warning : warnings)
         if (const std::string line = warning_line(warning); view.warned.insert(line).second)
@@ -35,13 +53,16 @@ void tell_warnings(const Session& session, WatchView& view, const std::vector<Jo
 
 /// Uploads what the command names and makes the job.
 Job submit(const Session& session, const SubmitCommand& command, WatchView& view) {
-    // Both files are read before anything is sent, so that a misspelt name leaves nothing on the server.
+    // All files are read before anything is sent, so that a misspelt name leaves nothing on the server.
     const std::string type = scene_content_type(command.scene);
     const std::string scene_bytes = read_input(command.scene);
+    const SceneFiles files = collect_scene_files(command.scene, scene_bytes);
     const std::string paths_bytes = command.paths ? read_input(*command.paths) : "";
 
     HttpConnection connection = connect(session);
-    const Json scene = upload(connection, "/v1/scenes" + scene_query(command), scene_bytes, type);
+    const Json scene = files.size() > 1
+                           ? upload_files(connection, command, files)
+                           : upload(connection, "/v1/scenes" + scene_query(command), scene_bytes, type);
     tell_warnings(session, view, read_warnings(find_member(scene, "warnings")));
     Json request{{"scene", scene["id"]}};
     if (command.paths)

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iomanip>
+#include <sstream>
 
 namespace afterglow::client {
 
@@ -53,6 +55,19 @@ std::string spoken(std::chrono::duration<double> duration) {
     else
         std::snprintf(buffer.data(), buffer.size(), "%lld h %02lld min", whole / 3600, whole / 60 % 60);
     return buffer.data();
+}
+
+std::string spoken_bytes(double bytes) {
+    const char* unit = "bytes";
+    for (const char* larger : {"kB", "MB", "GB", "TB"}) {
+        if (bytes < 999.5) break;
+        bytes /= 1000;
+        unit = larger;
+    }
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(bytes < 9.95 && std::string_view(unit) != "bytes" ? 1 : 0)
+         << bytes << ' ' << unit;
+    return text.str();
 }
 
 std::string percent(double share) {

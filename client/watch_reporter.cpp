@@ -31,6 +31,7 @@ class LineReporter : public WatchReporter {
 
     void on_event(const ServerEvent&, const WatchView& view, const WatchNews& news) override {
         for (const std::string& warning : news.warnings) output_.err << "warning: " << warning << std::endl;
+        if (news.kind == Kind::edit) output_.out << news.told << std::endl;
         if (news.kind == Kind::state) output_.out << state_line(view) << std::endl;
         if (news.kind == Kind::final_image) output_.out << finished_line(view, *news.image) << std::endl;
         check_output(output_.out);
@@ -71,6 +72,7 @@ class TerminalReporter : public WatchReporter {
 
     void on_event(const ServerEvent&, const WatchView& view, const WatchNews& news) override {
         for (const std::string& warning : news.warnings) tell("warning: " + warning);
+        if (news.kind == Kind::edit) tell(news.told);
         // A full line would wrap on some terminals, and the return would then redraw the wrong one.
         output_.out << '\r' << progress_line(view, output_.columns() - 1) << "\x1b[K" << std::flush;
         drawn_ = Drawn::yes;

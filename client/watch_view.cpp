@@ -26,6 +26,7 @@ std::vector<std::string> new_warnings(WatchView& view, const std::vector<JobWarn
 
 WatchNews take_image(WatchView& view, const FrameImage& image) {
     // A replay repeats pictures; one that is older than what is shown is no news.
+    if (image.stage == FrameImage::Stage::stale) return {};
     const bool known_final = view.finished.contains(image.frame);
     const bool superseded =
         view.image && view.image->frame == image.frame && view.image->revision >= image.revision;
@@ -64,6 +65,20 @@ WatchNews take_progress(WatchView& view, const Json& data) {
     return {Kind::progress, {}, {}};
 }
 
+/// Frames from the first one that an edit changes are to be finished again.
+WatchNews take_edit(WatchView& view, const Json& data) {
+    const int first = find_int(data, "first_frame").value_or(0);
+    view.finished.erase(view.finished.lower_bound(first), view.finished.end());
+    return {Kind::edit, {}, {}, "edited: frames from " + std::to_string(first) + " on are computed again"};
+}
+
+WatchNews take_reused(const Json& data) {
+    return {Kind::edit,
+            {},
+            {},
+            "the edit kept " + percent(find_number(data, "reused").value_or(0)) + " of all lines"};
+}
+
 }  // namespace
 
 WatchNews apply_event(WatchView& view, const ServerEvent& event, const std::string& place) {
@@ -72,6 +87,8 @@ WatchNews apply_event(WatchView& view, const ServerEvent& event, const std::stri
     if (event.name == "job") return take_job(view, data, place);
     if (event.name == "progress") return take_progress(view, data);
     if (event.name == "image") return take_image(view, read_frame_image(data, place));
+    if (event.name == "edit") return take_edit(view, data);
+    if (event.name == "reused") return take_reused(data);
     if (event.name == "warning") return {Kind::nothing, {}, new_warnings(view, {read_warning(data)})};
     if (event.name == "error") view.error = problem_line(data);
     if (event.name == "end") return take_state(view, need_string(data, "state", place));

@@ -30,10 +30,11 @@ struct WatchView {
 
 /// What an event brought that is worth telling.
 struct WatchNews {
-    enum class Kind { nothing, state, progress, image, final_image };
+    enum class Kind { nothing, state, progress, image, final_image, edit };
     Kind kind = Kind::nothing;
     std::optional<FrameImage> image;    ///< of an image
     std::vector<std::string> warnings;  ///< one line each; only those not told before
+    std::string told = {};              ///< of an edit, one line
 };
 
 /// Brings the view up to date. A repeated event (after a replay) is no news. Errors: no_server naming `place`

@@ -10,7 +10,9 @@
 #include <unistd.h>
 #include <variant>
 
+#include "service/base/child_process.h"
 #include "service/base/console.h"
+#include "service/commands/child_command.h"
 #include "service/commands/interrupt.h"
 #include "service/commands/process_age.h"
 #include "service/commands/render_command.h"
@@ -89,6 +91,12 @@ int main(int argc, char** argv) {
         std::chrono::duration_cast<std::chrono::steady_clock::duration>(afterglow::process_age());
     const std::span<const char* const> arguments(argv, static_cast<std::size_t>(argc));
     const std::string_view command = argc > 1 ? argv[1] : "";
+    try {
+        // Before anything else begins: it is a process of few threads with limits of its own.
+        if (command == afterglow::child_command_name) return afterglow::child_command(arguments.subspan(2));
+    } catch (const std::exception& e) {
+        return complain(e.what(), status_bad_input);
+    }
     const afterglow::Interrupt interrupt;
     try {
         if (command == "render")

@@ -1,6 +1,7 @@
 #include "service/api/event_stream.h"
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 #include <utility>
 
@@ -13,6 +14,25 @@ std::string sse_text(std::uint64_t id, std::string_view name, std::string_view d
     text += data;  // JSON without line breaks
     text += "\n\n";
     return text;
+}
+
+std::string ndjson_text(std::uint64_t id, std::string_view name, std::string_view data) {
+    std::string text = "{\"event\":\"" + std::string(name) + "\",\"id\":" + std::to_string(id) + ",\"data\":";
+    text += data;  // JSON without line breaks
+    text += "}\n";
+    return text;
+}
+
+const EventFormat sse_format{"text/event-stream", sse_text, ": events\n\n", ": still here\n\n"};
+const EventFormat ndjson_format{"application/x-ndjson", ndjson_text, "\n", "\n"};
+
+const EventFormat& format_accepted(std::string_view accept) {
+    std::string types(accept);
+    std::transform(types.begin(), types.end(), types.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const bool wants_lines = types.find(ndjson_format.content_type) != std::string::npos;
+    return wants_lines && types.find(sse_format.content_type) == std::string::npos ? ndjson_format
+                                                                                   : sse_format;
 }
 
 std::vector<Event> without_superseded(std::vector<Event> events) {
@@ -40,14 +60,14 @@ Piece EventStream::next() {
         was_up_to_date_ = true;
         if (Clock::now() - last_sent_ < config_.heartbeat) return {};
         last_sent_ = Clock::now();
-        return {": still here\n\n", Piece::Then::more};
+        return {config_.format->heartbeat, Piece::Then::more};
     }
     reached_ = batch.events.back().id;
     if (was_up_to_date_ && batch.fill == EventLog::Fill::full)
         batch.events = without_superseded(std::move(batch.events));
     Piece piece;
     for (const Event& event : batch.events)
-        piece.bytes += sse_text(event.id, name_of(event.kind), event.data);
+        piece.bytes += config_.format->text(event.id, name_of(event.kind), event.data);
     if (batch.events.back().kind == EventKind::end) piece.then = Piece::Then::end;
     last_sent_ = Clock::now();
     return piece;

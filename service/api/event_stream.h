@@ -15,12 +15,30 @@ namespace afterglow {
 /// One event as `text/event-stream` (HTML Living Standard, §9.2).
 std::string sse_text(std::uint64_t id, std::string_view name, std::string_view data);
 
+/// One event as a line of JSON, `{"event","id","data"}`.
+std::string ndjson_text(std::uint64_t id, std::string_view name, std::string_view data);
+
+/// How a stream of events is written.
+struct EventFormat {
+    const char* content_type;
+    std::string (*text)(std::uint64_t id, std::string_view name, std::string_view data);
+    const char* opening;    ///< sent at once, so that the reader knows that it is connected
+    const char* heartbeat;  ///< sent when nothing has happened for long; no event
+};
+/// Server-sent events, or lines of JSON between which empty ones may stand.
+extern const EventFormat sse_format;
+extern const EventFormat ndjson_format;
+/// The one that an Accept header asks for: lines where it names application/x-ndjson and not
+/// text/event-stream. Thread-safety: pure; any text is allowed.
+const EventFormat& format_accepted(std::string_view accept);
+
 /// Leaves out images that a later image of the same frame in the list makes superfluous; final ones stay.
 std::vector<Event> without_superseded(std::vector<Event> events);
 
 struct EventStreamConfig {
-    std::chrono::milliseconds wait{500};  ///< longest wait in `next`
-    std::chrono::seconds heartbeat{10};   ///< a comment is sent after this long without an event
+    std::chrono::milliseconds wait{500};      ///< longest wait in `next`
+    std::chrono::seconds heartbeat{10};       ///< a sign of life is sent after this long without an event
+    const EventFormat* format = &sse_format;  ///< never null
 };
 
 /// A reader of a job's events. It sends all there is; once it has been up to date and then falls behind by a

@@ -34,13 +34,13 @@ int read_frame(const Job& job, const std::string& text) {
 Reply get_frames(const RouteContext& context, const std::string& id) {
     const Job job = job_at(context.jobs, id);
     Json frames = Json::array();
-    for (const FrameInfo& info : context.frames.newest(id)) frames.push_back(frame_json(id, info));
+    for (const FrameInfo& info : context.frames.newest(id)) frames.push_back(frame_json(job, info));
     return json_reply({{"frames", std::move(frames)}});
 }
 
 /// How near each finished frame came and when: `seconds` counts the time that the frames took so far.
 Reply get_convergence(const RouteContext& context, const Request& request, const std::string& id) {
-    job_at(context.jobs, id);
+    const Job job = job_at(context.jobs, id);
     const std::string type = request.parameter("type");
     if (!type.empty() && type != "json" && type != "csv")
         throw Error(ErrorKind::invalid_input, "request?type", "expected json or csv");
@@ -51,7 +51,7 @@ Reply get_convergence(const RouteContext& context, const Request& request, const
     std::string csv = "frame,seconds,residual,error_bound,picture_error\n";
     double seconds = 0;
     for (const FrameInfo& info : context.frames.newest(id)) {
-        if (!info.final) continue;
+        if (!info.final || job.is_stale(info)) continue;
         seconds += info.seconds;
         const Json row = {{"frame", info.frame},
                           {"seconds", seconds},
@@ -71,6 +71,8 @@ Reply get_convergence(const RouteContext& context, const Request& request, const
 /// The revision asked for, or the newest; a problem where there is none yet or never will be.
 int choose_revision(const RouteContext& context, const Job& job, int frame, const std::string& asked) {
     const auto newest = context.frames.newest(job.id, frame);
+    if (!newest && job.frames_removed)
+        throw ProblemError({410, "gone", "the frames of this job have been removed", std::to_string(frame)});
     if (!newest) {
         if (has_ended(job.state))
             throw ProblemError({404, "not_found", "the job ended before this frame", std::to_string(frame)});

@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 
+#include "service/api/job_wait.h"
 #include "service/api/routes.h"
 #include "service/base/identity.h"
 #include "service/base/option_values.h"
@@ -16,27 +17,27 @@ namespace {
 constexpr const char* body_name = "request";  // stands for the body in messages
 
 /// What is found wrong with a job's scene or paths is said of the field that names them.
-World world_of(const RouteContext& context, const JobRequest& request) {
+SceneSurvey survey_of(const RouteContext& context, const JobRequest& request) {
     if (!context.scenes.find(request.scene))
         throw Error(ErrorKind::not_found, "request#/scene", "there is no such scene; upload it again");
     if (!request.paths.empty() && !context.scenes.has_paths(request.paths))
         throw Error(ErrorKind::not_found, "request#/paths", "there are no such paths; upload them again");
-    return context.scenes.world(request.scene, request.paths, request.settings.background);
+    return context.scenes.survey(request.scene, request.paths, request.settings.background,
+                                 request.settings.sequence.frames_per_second);
 }
 
-void check_camera(const World& world, const std::string& name) {
+void check_camera(const std::vector<std::string>& cameras, const std::string& name) {
     if (name.empty()) return;
     std::string names;
-    for (const PlacedCamera& placed : world.cameras) {
-        if (placed.camera.name == name) return;
-        names += (names.empty() ? "" : ", ") + placed.camera.name;
+    for (const std::string& camera : cameras) {
+        if (camera == name) return;
+        names += (names.empty() ? "" : ", ") + camera;
     }
     throw Error(ErrorKind::not_found, "request#/settings/camera", "no such camera; there are: " + names);
 }
 
-FrameRange frames_of(const World& world, const JobSettings& settings, const Limits& limits) {
-    const FrameRange frames =
-        settings.frames.value_or(FrameRange{0, last_frame_of(world, settings.sequence)});
+FrameRange frames_of(const SceneSurvey& survey, const JobSettings& settings, const Limits& limits) {
+    const FrameRange frames = settings.frames.value_or(FrameRange{0, survey.last_frame});
     if (frames.last - frames.first >= limits.frames)
         throw Error(ErrorKind::too_large, "request#/settings/frames",
                     "the animation has more frames than the limit of " + std::to_string(limits.frames));
@@ -53,20 +54,17 @@ void check_quota(const RouteContext& context, const Client& client, const Job& d
     if (draft.frame_count() > client.quota.frames) refuse("frames", "frames", client.quota.frames);
     if (std::int64_t{config.width} * config.height > client.quota.pixels)
         refuse("width", "pixels", client.quota.pixels);
-    std::int64_t active = 0;
-    for (const Job& job : context.jobs.list())
-        if (job.owner == client.name && !has_ended(job.state)) ++active;
-    if (active >= client.quota.jobs) throw past_quota("jobs", client.quota.jobs);
+    check_unfinished(context, client, draft);
 }
 
 std::string read_idempotency_key(const Request& request) {
-    const std::string key = request.header("idempotency-key");
+    std::string key = request.header("idempotency-key");
     if (key.size() > 255) throw Error(ErrorKind::invalid_input, "Idempotency-Key", "longer than 255 bytes");
     return key;
 }
 
 Reply made_reply(const Job& job) {
-    Reply reply = json_reply(to_json(job), 201);
+    Reply reply = job_reply(job, 201);
     reply.headers.emplace_back("Location", "/v1/jobs/" + job.id);
     return reply;
 }
@@ -75,15 +73,17 @@ Reply post_job(const RouteContext& context, const Request& http_request) {
     const std::string key = read_idempotency_key(http_request);
     const Json body = json_body(http_request, context.limits.request_bytes);
     const JobRequest request = read_job_request(JsonView(body, body_name), context.limits);
-    const World world = world_of(context, request);
-    check_camera(world, request.settings.sequence.camera);
+    const SceneSurvey survey = survey_of(context, request);
+    check_camera(survey.cameras, request.settings.sequence.camera);
 
     Job draft;
     draft.scene = request.scene;
     draft.paths = request.paths;
     draft.settings = request.settings;
-    draft.frames = frames_of(world, request.settings, context.limits);
-    draft.warnings = world.warnings;
+    draft.frames = frames_of(survey, request.settings, context.limits);
+    const double asked = request.settings.sequence.frames_per_second;
+    draft.frames_per_second = asked > 0 ? asked : survey.frames_per_second;
+    draft.warnings = survey.warnings;
     draft.owner = http_request.client.name;
     draft.idempotency_key = key;
     draft.idempotency_hash = key.empty() ? "" : sha256(http_request.body);
@@ -105,62 +105,61 @@ std::optional<JobState> read_state(const std::string& text) {
 Reply get_jobs(const RouteContext& context, const Request& request) {
     const auto state = read_state(request.parameter("state"));
     const std::string limit_text = request.parameter("limit");
-    const auto limit = limit_text.empty() ? std::numeric_limits<std::int64_t>::max()
-                                          : whole_number("request?limit", limit_text, 1, 10'000);
-    const std::string cursor = request.parameter("cursor");
-    const std::vector<Job> all = context.jobs.list();
-    auto job = all.begin();
-    if (!cursor.empty()) {
-        job = std::find_if(all.begin(), all.end(), [&](const Job& one) { return one.id == cursor; });
-        if (job == all.end())
-            throw ProblemError({410, "gone", "this cursor is known no longer", "request?cursor"});
-        ++job;
-    }
+    const auto limit = limit_text.empty()
+                           ? std::numeric_limits<std::size_t>::max() - 1
+                           : static_cast<std::size_t>(whole_number("request?limit", limit_text, 1, 10'000));
+    // One more than asked for tells whether anything comes after.
+    const auto jobs = context.jobs.list({request.parameter("cursor"), state, limit + 1});
+    if (!jobs) throw ProblemError({410, "gone", "this cursor is known no longer", "request?cursor"});
     Json page = Json::array();
-    Json next = nullptr;
-    for (; job != all.end(); ++job) {
-        if (state && job->state != *state) continue;
-        if (static_cast<std::int64_t>(page.size()) == limit) {
-            next = page.back().at("id");
-            break;
-        }
-        page.push_back(to_json(*job));
-    }
-    return json_reply({{"jobs", std::move(page)}, {"next", std::move(next)}});
+    for (std::size_t i = 0; i < std::min(jobs->size(), limit); ++i) page.push_back(to_json((*jobs)[i]));
+    const Json next = jobs->size() > limit ? page.back().at("id") : Json(nullptr);
+    return json_reply({{"jobs", std::move(page)}, {"next", next}});
 }
 
-/// Waits until the job ends, at most as long as asked.
+/// With `wait`, once the job has ended, or after as long as asked.
 Reply get_job(const RouteContext& context, const Request& request, const std::string& id) {
-    job_at(context.jobs, id);
-    if (const std::string text = request.parameter("wait"); !text.empty()) {
-        const auto give_up = std::chrono::steady_clock::now() +
-                             std::chrono::seconds(whole_number("request?wait", text, 0, 60));
-        const auto log = events_at(context.jobs, id);
-        auto reached = log->last_id();
-        while (!has_ended(job_at(context.jobs, id).state)) {
-            const auto left =
-                std::chrono::ceil<std::chrono::milliseconds>(give_up - std::chrono::steady_clock::now());
-            if (left.count() <= 0) break;
-            if (log->wait_after(reached, left).status == EventLog::Status::ended) break;
-            reached = log->last_id();
-        }
-    }
-    return json_reply(to_json(job_at(context.jobs, id)));
+    Job job = job_at(context.jobs, id);
+    const std::string text = request.parameter("wait");
+    if (text.empty()) return job_reply(job);
+    const std::chrono::seconds longest(whole_number("request?wait", text, 0, 60));
+    Reply reply = job_reply(job);
+    reply.body.clear();
+    reply.stream = context.usage.counted(
+        request.client,
+        std::make_shared<JobWait>(context.jobs, std::move(job), events_at(context.jobs, id), longest));
+    return reply;
 }
 
 /// A change of state that the client asks for: 409 where the job's state does not allow it.
 Reply change_job(const RouteContext& context, const Request& request, const std::string& id,
                  const std::function<bool()>& change) {
     own_job_at(context.jobs, request, id);
-    if (change()) return json_reply(to_json(job_at(context.jobs, id)));
+    if (change()) return job_reply(job_at(context.jobs, id));
     const JobState state = job_at(context.jobs, id).state;
     throw ProblemError({409, has_ended(state) ? "job_ended" : "illegal_transition",
                         "not possible for a job that is " + std::string(name_of(state)), id});
 }
 
-bool requeue_from(const RouteContext& context, const std::string& id, bool from_an_end) {
+/// The only thing of a job that a client may set anew is how it stands among others.
+Reply patch_job(const RouteContext& context, const Request& request, const std::string& id) {
+    const Json body = json_body(request, context.limits.request_bytes, "application/merge-patch+json");
+    const auto priority = read_priority(JsonView(body, body_name));
+    return change_job(context, request, id,
+                      [&] { return !priority || context.worker.set_priority(id, *priority); });
+}
+
+bool resume(const RouteContext& context, const std::string& id) {
+    if (has_ended(job_at(context.jobs, id).state) || !context.jobs.requeue(id)) return false;
+    context.worker.submit(id);
+    return true;
+}
+
+bool retry(const RouteContext& context, const Client& client, const std::string& id) {
     const Job job = job_at(context.jobs, id);
-    if (has_ended(job.state) != from_an_end || !context.jobs.requeue(id)) return false;
+    if (!has_ended(job.state) || !may_follow(job.state, JobState::queued)) return false;
+    check_unfinished(context, client, job);
+    if (!context.jobs.requeue(id)) return false;
     context.worker.submit(id);
     return true;
 }
@@ -189,10 +188,24 @@ Reply delete_job(const RouteContext& context, const Request& request, const std:
 
 }  // namespace
 
+void check_unfinished(const RouteContext& context, const Client& client, const Job& job) {
+    if (job.owner != client.name) return;
+    std::int64_t unfinished = 0;
+    for (const Job& one : context.jobs.unended())
+        if (one.owner == client.name) ++unfinished;
+    if (unfinished >= client.quota.jobs) throw past_quota("jobs", client.quota.jobs);
+}
+
 Job own_job_at(const JobStore& jobs, const Request& request, const std::string& id) {
     Job job = job_at(jobs, id);
     if (request.client.role == Role::admin || job.owner == request.client.name) return job;
     throw ProblemError({403, "not_yours", "this job is another client's", id});
+}
+
+Reply job_reply(const Job& job, int status) {
+    Reply reply = json_reply(to_json(job), status);
+    reply.headers.emplace_back("ETag", "\"" + std::to_string(job.revision()) + "\"");
+    return reply;
 }
 
 Job job_at(const JobStore& jobs, const std::string& id) {
@@ -205,9 +218,9 @@ std::shared_ptr<const EventLog> events_at(const JobStore& jobs, const std::strin
     throw ProblemError({404, "not_found", "there is no such job", id});
 }
 
-Json json_body(const Request& request, std::size_t max_bytes) {
-    if (request.media_type() != "application/json")
-        throw ProblemError({415, "unsupported_media_type", "expected application/json", "Content-Type"});
+Json json_body(const Request& request, std::size_t max_bytes, const std::string& media_type) {
+    if (request.media_type() != media_type)
+        throw ProblemError({415, "unsupported_media_type", "expected " + media_type, "Content-Type"});
     if (request.body.size() > max_bytes)
         throw ProblemError(
             {413, "too_large", "the body is longer than " + std::to_string(max_bytes) + " bytes", body_name});
@@ -226,20 +239,26 @@ void add_job_routes(Router& router, const RouteContext& context) {
     router.add("GET", "/v1/jobs/{}", [context](const Request& request, const PathValues& values) {
         return get_job(context, request, values[0]);
     });
+    router.add("PATCH", "/v1/jobs/{}", [context](const Request& request, const PathValues& values) {
+        return patch_job(context, request, values[0]);
+    });
     router.add("DELETE", "/v1/jobs/{}", [context](const Request& request, const PathValues& values) {
         return delete_job(context, request, values[0]);
     });
     const auto add_change = [&](const std::string& name,
-                                const std::function<bool(const std::string&)>& change) {
+                                const std::function<bool(const Client&, const std::string&)>& change) {
         router.add("POST", "/v1/jobs/{}/" + name,
                    [context, change](const Request& request, const PathValues& values) {
-                       return change_job(context, request, values[0], [&] { return change(values[0]); });
+                       return change_job(context, request, values[0],
+                                         [&] { return change(request.client, values[0]); });
                    });
     };
-    add_change("cancel", [context](const std::string& id) { return context.worker.cancel(id); });
-    add_change("pause", [context](const std::string& id) { return context.worker.pause(id); });
-    add_change("resume", [context](const std::string& id) { return requeue_from(context, id, false); });
-    add_change("retry", [context](const std::string& id) { return requeue_from(context, id, true); });
+    add_change("cancel",
+               [context](const Client&, const std::string& id) { return context.worker.cancel(id); });
+    add_change("pause", [context](const Client&, const std::string& id) { return context.worker.pause(id); });
+    add_change("resume", [context](const Client&, const std::string& id) { return resume(context, id); });
+    add_change("retry",
+               [context](const Client& client, const std::string& id) { return retry(context, client, id); });
 }
 
 }  // namespace afterglow

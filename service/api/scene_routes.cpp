@@ -1,4 +1,5 @@
 #include "service/api/routes.h"
+#include "service/api/scene_files.h"
 #include "service/base/option_values.h"
 
 namespace afterglow {
@@ -11,9 +12,11 @@ SceneFormat format_of_body(const Request& request) {
     if (type == "model/gltf+json") return SceneFormat::gltf;
     if (type == "model/obj") return SceneFormat::obj;
     if (type == "application/json") return SceneFormat::json;
-    throw ProblemError({415, "unsupported_media_type",
-                        "scenes are model/gltf-binary, model/gltf+json, model/obj or application/json",
-                        "Content-Type"});
+    throw ProblemError(
+        {415, "unsupported_media_type",
+         "scenes are model/gltf-binary, model/gltf+json, model/obj, application/json, application/zip, "
+         "multipart/form-data or application/vnd.afterglow.files+json",
+         "Content-Type"});
 }
 
 UpAxis read_up(const std::string& text) {
@@ -24,10 +27,10 @@ UpAxis read_up(const std::string& text) {
 
 SceneUpload read_upload(const Request& request) {
     for (const auto& [name, value] : request.query)
-        if (name != "name" && name != "obj_unit_m" && name != "obj_up")
+        if (name != "name" && name != "obj_unit_m" && name != "obj_up" && name != "main")
             throw Error(ErrorKind::invalid_input, "request?" + name, "unknown parameter");
     SceneUpload upload;
-    upload.format = format_of_body(request);
+    upload.format = holds_files(request) ? SceneFormat::bundle : format_of_body(request);
     upload.name = request.parameter("name");
     if (upload.name.empty()) upload.name = "scene";
     if (upload.name.size() > 200)
@@ -38,11 +41,23 @@ SceneUpload read_upload(const Request& request) {
     return upload;
 }
 
+std::size_t bytes_of(const Request& request) {
+    std::size_t bytes = request.body.size();
+    for (const FormPart& part : request.parts) bytes += part.body.size();
+    return bytes;
+}
+
 Reply post_scene(const RouteContext& context, const Request& request) {
-    const SceneUpload upload = read_upload(request);
-    context.usage.take_bytes(request.client, request.body.size());
+    SceneUpload upload = read_upload(request);
+    context.usage.take_bytes(request.client, bytes_of(request));
+    PackedScene packed;
+    if (upload.format == SceneFormat::bundle) {
+        packed = read_scene_files(request, context.blobs, context.limits, context.unpack);
+        upload.format = packed.format;
+    }
+    const std::string& bytes = packed.bytes.empty() ? request.body : packed.bytes;
     const auto added =
-        context.scenes.add(request.body, upload, static_cast<std::uint64_t>(request.client.quota.triangles));
+        context.scenes.add(bytes, upload, static_cast<std::uint64_t>(request.client.quota.triangles));
     return json_reply(to_json(added.scene), added.outcome == SceneStore::Added::Outcome::created ? 201 : 200);
 }
 

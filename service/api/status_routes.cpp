@@ -1,6 +1,7 @@
 #include <map>
 #include <sstream>
 
+#include "service/api/api_files.h"
 #include "service/api/routes.h"
 
 namespace afterglow {
@@ -21,20 +22,16 @@ Reply get_ready(Database& database) {
 
 /// Prometheus text format 0.0.4.
 Reply get_metrics(const RouteContext& context) {
-    std::map<JobState, int> states;
-    std::int64_t frames = 0;
-    for (const JobState state : all_job_states) states[state] = 0;
-    for (const Job& job : context.jobs.list()) {
-        ++states[job.state];
-        frames += job.frames_done;
-    }
+    JobStore::Counts counts = context.jobs.counts();
+    for (const JobState state : all_job_states) counts.jobs.try_emplace(state, 0);
     std::ostringstream text;
     text << "# HELP afterglow_jobs Jobs by state.\n# TYPE afterglow_jobs gauge\n";
-    for (const auto& [state, count] : states)
+    for (const auto& [state, count] : counts.jobs)
         text << "afterglow_jobs{state=\"" << name_of(state) << "\"} " << count << "\n";
     text << "# HELP afterglow_frames Finished frames of the jobs that are kept.\n"
             "# TYPE afterglow_frames gauge\nafterglow_frames "
-         << frames << "\n# HELP afterglow_streams Streams that are open.\n# TYPE afterglow_streams gauge\n"
+         << counts.frames
+         << "\n# HELP afterglow_streams Streams that are open.\n# TYPE afterglow_streams gauge\n"
          << "afterglow_streams " << context.usage.open_streams() << "\n";
     return {200, "text/plain; version=0.0.4", text.str(), {{"Cache-Control", "no-store"}}, nullptr};
 }
@@ -47,6 +44,8 @@ void add_status_routes(Router& router, const RouteContext& context, Database& da
     });
     router.add("GET", "/readyz",
                [&database](const Request&, const PathValues&) { return get_ready(database); });
+    router.add("GET", "/v1/openapi.json",
+               [](const Request& request, const PathValues&) { return file_reply(request, api_files()[0]); });
     router.add("GET", "/metrics",
                [context](const Request&, const PathValues&) { return get_metrics(context); });
 }

@@ -25,12 +25,14 @@ std::uint64_t present(const EventLog& log) {
     return end ? end->id - 1 : log.last_id();
 }
 
-std::string snapshot_text(const RouteContext& context, const std::string& id, std::uint64_t after) {
-    Json snapshot = to_json(job_at(context.jobs, id));
+std::string snapshot_text(const RouteContext& context, const std::string& id, std::uint64_t after,
+                          const EventFormat& format) {
+    const Job job = job_at(context.jobs, id);
+    Json snapshot = to_json(job);
     snapshot["frames"] = Json::array();
     for (const FrameInfo& info : context.frames.newest(id))
-        snapshot["frames"].push_back(frame_json(id, info));
-    return sse_text(after, "snapshot", dump(snapshot));
+        snapshot["frames"].push_back(frame_json(job, info));
+    return format.text(after, "snapshot", dump(snapshot));
 }
 
 Reply get_events(const RouteContext& context, const Request& request, const std::string& id) {
@@ -38,7 +40,8 @@ Reply get_events(const RouteContext& context, const Request& request, const std:
     const auto log = events_at(context.jobs, id);
     const auto reached = last_event_id(request);
     std::uint64_t after = 0;
-    std::string opening = ": events\n\n";  // lets the reader know at once that it is connected
+    const EventFormat& format = format_accepted(request.header("accept"));
+    std::string opening = format.opening;
     if (reached) {
         after = *reached;
         const auto batch = log->wait_after(after, std::chrono::milliseconds(0));
@@ -47,13 +50,15 @@ Reply get_events(const RouteContext& context, const Request& request, const std:
     } else {
         // The id first: an event between the two is then told twice, never lost.
         after = present(*log);
-        opening = snapshot_text(context, id, after);
+        opening = snapshot_text(context, id, after, format);
     }
     Reply reply;
-    reply.content_type = "text/event-stream";
-    reply.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
-    reply.stream =
-        context.usage.counted(request.client, std::make_shared<EventStream>(log, after, std::move(opening)));
+    reply.content_type = format.content_type;
+    reply.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}, {"Vary", "Accept"}};
+    EventStreamConfig config;
+    config.format = &format;
+    reply.stream = context.usage.counted(
+        request.client, std::make_shared<EventStream>(log, after, std::move(opening), config));
     return reply;
 }
 

@@ -27,12 +27,22 @@ ProblemError past_quota(const std::string& what, std::int64_t limit) {
         {429, "quota_exceeded", "more than the quota of " + std::to_string(limit) + " " + what, what});
 }
 
+/// What the client has used, where so many bytes more are within its quota. Callers hold the lock.
+std::int64_t& Usage::with_room_for(const Client& client, std::size_t bytes) {
+    std::int64_t& used = bytes_[client.name];
+    if (static_cast<std::int64_t>(bytes) > client.quota.bytes - used)
+        throw past_quota("bytes", client.quota.bytes);
+    return used;
+}
+
+void Usage::check_bytes(const Client& client, std::size_t bytes) {
+    const std::lock_guard lock(mutex_);
+    with_room_for(client, bytes);
+}
+
 void Usage::take_bytes(const Client& client, std::size_t bytes) {
     const std::lock_guard lock(mutex_);
-    std::int64_t& used = bytes_[client.name];
-    const auto more = static_cast<std::int64_t>(bytes);
-    if (more > client.quota.bytes - used) throw past_quota("bytes", client.quota.bytes);
-    used += more;
+    with_room_for(client, bytes) += static_cast<std::int64_t>(bytes);
 }
 
 std::int64_t Usage::open_streams() const {

@@ -16,6 +16,8 @@ namespace afterglow {
 /// members.
 class Usage {
   public:
+    /// Whether so many more could be taken. Errors as of `take_bytes`.
+    void check_bytes(const Client& client, std::size_t bytes);
     /// Errors: ProblemError 429 past the client's quota.
     void take_bytes(const Client& client, std::size_t bytes);
     /// The same stream, counted as open while it lives. Errors: ProblemError 429 past the client's quota.
@@ -30,6 +32,8 @@ class Usage {
         std::map<std::string, std::int64_t> streams;
     };
     class CountedStream;
+
+    std::int64_t& with_room_for(const Client& client, std::size_t bytes);
 
     std::mutex mutex_;
     std::map<std::string, std::int64_t> bytes_;

@@ -45,7 +45,33 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
     }
 }
 
+/// A whole number above 0 followed by one of the units.
+template <std::size_t n>
+std::int64_t with_unit(const std::string& place, std::string_view text, const std::string& expected,
+                       const std::array<std::pair<std::string_view, std::int64_t>, n>& units) {
+    constexpr std::int64_t most = std::int64_t{1} << 53U;
+    for (const auto& [name, size] : units) {
+        std::int64_t value = 0;
+        if (!text.ends_with(name) || !read_number(text.substr(0, text.size() - name.size()), value)) continue;
+        if (value > 0 && value <= most / size) return value * size;
+    }
+    fail(place, expected, text);
+}
+
 }  // namespace
+
+std::chrono::seconds length_of_time(const std::string& place, std::string_view text) {
+    constexpr std::array<std::pair<std::string_view, std::int64_t>, 4> units{
+        {{"s", 1}, {"m", 60}, {"h", 3600}, {"d", 86'400}}};
+    return std::chrono::seconds(with_unit(place, text, "a length of time such as 90m, 12h or 7d", units));
+}
+
+std::uint64_t byte_count(const std::string& place, std::string_view text) {
+    constexpr std::array<std::pair<std::string_view, std::int64_t>, 4> units{
+        {{"kB", 1000}, {"MB", 1'000'000}, {"GB", 1'000'000'000}, {"TB", 1'000'000'000'000}}};
+    return static_cast<std::uint64_t>(
+        with_unit(place, text, "a number of bytes such as 500MB or 20GB", units));
+}
 
 std::int64_t whole_number(const std::string& place, std::string_view text, std::int64_t low,
                           std::int64_t high) {

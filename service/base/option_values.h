@@ -3,6 +3,7 @@
 // Texts of options and settings into typed values. Each function takes the place to name in its error (an
 // option such as "--rays", or a field), and fails with Error{invalid_input}. Thread-safety: all pure.
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -32,5 +33,11 @@ PictureSize picture_size(const std::string& place, std::string_view text);
 Rgb linear_colour(const std::string& place, std::string_view text);
 /// Metres in a unit of length: m, cm, mm, in, ft, or a number of metres.
 double unit_in_metres(const std::string& place, std::string_view text);
+
+/// A length of time with its unit: s, m, h or d; above 0.
+std::chrono::seconds length_of_time(const std::string& place, std::string_view text);
+
+/// A number of bytes with its unit: kB, MB, GB or TB; above 0.
+std::uint64_t byte_count(const std::string& place, std::string_view text);
 
 }  // namespace afterglow

@@ -80,11 +80,19 @@ int serve(const ServeConfig& config, const std::stop_token& stop) {
     const DataLock lock(data);
     // Without a folder of its own there is nothing to come back to.
     const auto at_stop = temporary ? ServiceConfig::AtStop::cancel : ServiceConfig::AtStop::keep;
-    Service service({data, config.threads, config.max_resident, config.limits, at_stop});
+    Service service({data,
+                     config.threads,
+                     config.max_resident,
+                     config.limits,
+                     at_stop,
+                     config.retention,
+                     {},
+                     config.job_memory});
     HttpServerConfig http{config.address, config.port, config.max_connections, config.limits.upload_bytes,
                           config.access_log};
     http.max_streams = std::max<std::size_t>(config.max_connections * 3 / 4, 1);
     http.gate = std::move(gate);
+    http.body_check = service.body_check();
     HttpServer server(service.router(), std::move(http));
     const int port = server.start();
     std::cout << "listening on http://" << shown_address(config.address) << ":" << port << std::endl;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <stop_token>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "service/base/limits.h"
 #include "service/http/http_server.h"
+#include "service/store/retention.h"
 
 namespace afterglow {
 
@@ -19,8 +21,10 @@ struct ServeConfig {
         data_folder;               ///< uploads, pictures, cache; empty: a temporary one, removed at the end
     int threads = 0;               ///< for the solver; 0: one a core
     std::size_t max_resident = 4;  ///< jobs that are computed in turn, each with its state in memory
+    std::uint64_t job_memory = 0;  ///< bytes that each job's process may take beyond its start; 0: any
     std::size_t max_connections = 256;      ///< answered at a time; more are told 503
     Limits limits;                          ///< what a client may ask for
+    RetentionConfig retention;              ///< how long and how much is kept
     std::filesystem::path token_file;       ///< who may use it; empty: everybody, on loopback only
     std::vector<std::string> hosts;         ///< names it is reached by, besides localhost
     AccessLog access_log = AccessLog::off;  ///< whether each request is told on standard error

@@ -17,7 +17,8 @@ using Text = std::optional<std::string>;
 
 /// The options as they were typed; absent where not given.
 struct Typed {
-    Text listen, data, threads, resident_jobs, connections, token_file;
+    Text listen, data, threads, resident_jobs, job_memory, connections, token_file, keep_frames_for,
+        keep_at_most;
     std::vector<std::string> hosts;
     bool access_log = false;
 };
@@ -28,7 +29,13 @@ void declare_options(CLI::App& app, Typed& typed) {
     app.add_option("--data", typed.data, "Folder for uploads, pictures and cache [a temporary one]");
     app.add_option("--threads", typed.threads, "Threads to solve with [one a core]");
     app.add_option("--resident-jobs", typed.resident_jobs, "Jobs whose state is in memory at a time [4]");
+    app.add_option("--job-memory", typed.job_memory,
+                   "Bytes of address space that each job's process may take, as 2GB [any]");
     app.add_option("--connections", typed.connections, "Connections answered at a time [256]");
+    app.add_option("--keep-frames-for", typed.keep_frames_for,
+                   "How long after a job's end its pictures and events are kept, as 90m, 12h or 7d [always]");
+    app.add_option("--keep-at-most", typed.keep_at_most,
+                   "Bytes of pictures and cache, as 500MB or 20GB; the oldest go first [any]");
     app.add_option(
         "--token-file", typed.token_file,
         "Who may use it, a line each: NAME viewer|submitter|admin TOKEN [LIMIT=N ...] [everybody]");
@@ -70,9 +77,13 @@ std::variant<ServeConfig, HelpText> read_serve_options(std::span<const char* con
     if (typed.resident_jobs)
         config.max_resident =
             static_cast<std::size_t>(whole_number("--resident-jobs", *typed.resident_jobs, 1, 1024));
+    if (typed.job_memory) config.job_memory = byte_count("--job-memory", *typed.job_memory);
     if (typed.connections)
         config.max_connections =
             static_cast<std::size_t>(whole_number("--connections", *typed.connections, 1, 10000));
+    if (typed.keep_frames_for)
+        config.retention.keep_for = length_of_time("--keep-frames-for", *typed.keep_frames_for);
+    if (typed.keep_at_most) config.retention.keep_at_most = byte_count("--keep-at-most", *typed.keep_at_most);
     if (typed.token_file) {
         if (typed.token_file->empty())
             throw Error(ErrorKind::invalid_input, "--token-file", "the path is empty");

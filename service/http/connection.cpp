@@ -64,6 +64,8 @@ Connection::HeadOutcome Connection::receive_head(std::size_t max_bytes) {
 
 std::ptrdiff_t Connection::read(char* to, std::size_t size) {
     if (!body_began_) body_began_ = Clock::now();
+    // Whoever reads may hold back what it cannot make sense of, such as what follows a form's last boundary.
+    if (body_bytes_ > patience_.body_bytes) return -1;
     std::ptrdiff_t received = 0;
     if (!ahead_.empty()) {
         const auto taken = ahead_.copy(to, size);

@@ -11,10 +11,11 @@ namespace afterglow {
 
 /// How long a peer may take.
 struct Patience {
-    std::chrono::milliseconds head{10'000};        ///< for the whole head of a request
-    std::chrono::milliseconds body_start{10'000};  ///< a body may be this much behind its least rate
-    double body_bytes_per_s = 4096;                ///< least rate of a body; 256 MiB would then take 18 h
-    std::chrono::milliseconds write{8'000};        ///< for a reader to take anything at all
+    std::chrono::milliseconds head{10'000};            ///< for the whole head of a request
+    std::chrono::milliseconds body_start{10'000};      ///< a body may be this much behind its least rate
+    std::size_t body_bytes = std::size_t{513} << 20U;  ///< as sent; past it nothing more is read
+    double body_bytes_per_s = 4096;                    ///< least rate of a body; 256 MiB would then take 18 h
+    std::chrono::milliseconds write{8'000};            ///< for a reader to take anything at all
     std::chrono::milliseconds linger{2'000};  ///< for a peer to take a reply that came before it was done
 };
 

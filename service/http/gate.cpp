@@ -16,7 +16,7 @@ std::string lower(std::string text) {
 }
 
 /// A host without its port and brackets.
-std::string name_of_host(std::string host) {
+std::string name_of_host(const std::string& host) {
     if (host.starts_with('[')) return host.substr(1, host.find(']') - 1);
     return lower(host.substr(0, host.find(':')));
 }

@@ -1,7 +1,9 @@
 #include "service/http/guarded_server.h"
 
+#include <optional>
 #include <utility>
 
+#include "service/http/chunk_guard.h"
 #include "service/http/http_message.h"
 
 namespace afterglow {
@@ -25,14 +27,20 @@ void set_socket_options(socket_t socket) {
 class GuardedStream : public httplib::Stream {
   public:
     GuardedStream(Connection& connection, std::string head)
-        : connection_(connection), head_(std::move(head)) {}
+        : connection_(connection), head_(std::move(head)) {
+        if (is_chunked(head_)) chunks_.emplace();
+    }
 
     [[nodiscard]] bool is_readable() const override {
         return used_ < head_.size() || connection_.is_readable();
     }
     [[nodiscard]] bool is_writable() const override { return connection_.is_writable(); }
     ssize_t read(char* to, std::size_t size) override {
-        if (used_ == head_.size()) return connection_.read(to, size);
+        if (used_ == head_.size()) {
+            const auto received = connection_.read(to, size);
+            if (received <= 0 || !chunks_) return received;
+            return chunks_->take({to, static_cast<std::size_t>(received)}) ? received : -1;
+        }
         const auto taken = head_.copy(to, size, used_);
         used_ += taken;
         return static_cast<ssize_t>(taken);
@@ -46,6 +54,7 @@ class GuardedStream : public httplib::Stream {
     Connection& connection_;
     std::string head_;
     std::size_t used_ = 0;
+    std::optional<ChunkGuard> chunks_;
 };
 
 std::string reply_text(const Problem& problem, const std::string& more_headers = "") {
@@ -66,8 +75,9 @@ class GuardedServer::Threads : public httplib::TaskQueue {
   public:
     explicit Threads(GuardedServer& server) : server_(server) {}
     void enqueue(std::function<void()> task) override {
+        if (server_.listener_ == std::thread::id()) server_.listener_ = std::this_thread::get_id();
         if (server_.threads_.run([task, keep = server_.keep_.lock()] { task(); })) return;
-        // Not even a thread to say no from: the task itself finds no place and closes.
+        // Not even a thread to say no from: here the task says so and closes.
         task();
     }
     void shutdown() override {}
@@ -130,7 +140,7 @@ bool GuardedServer::process_and_close_socket(socket_t socket) {
     }
     Connection connection(socket, config_.patience);
     bool answered = false;
-    if (threads_.active() > config_.max_connections + waiting_threads - 1) {
+    if (std::this_thread::get_id() == listener_) {
         refuse_at_once(socket);
     } else if (!is_ending && wait_for_place()) {
         try {

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include <httplib.h>
@@ -58,6 +59,7 @@ class GuardedServer : public httplib::Server {
     std::mutex mutex_;
     std::condition_variable changed_;
     std::set<socket_t> open_;
+    std::thread::id listener_;  ///< set before any other thread of this server begins
     std::size_t answering_ = 0;
     bool ending_ = false;
 };

@@ -15,6 +15,13 @@
 
 namespace afterglow {
 
+/// A field of a form (RFC 7578).
+struct FormPart {
+    std::string name;
+    std::string file_name;  ///< empty: none given
+    std::string body;
+};
+
 /// A request, received whole. A value.
 struct Request {
     std::string method;                          ///< upper case
@@ -22,7 +29,8 @@ struct Request {
     std::map<std::string, std::string> query;    ///< decoded; of repeated names the first
     std::map<std::string, std::string> headers;  ///< names in lower case; of repeated names the first
     std::string body;
-    Client client = {};  ///< as the gate found
+    std::vector<FormPart> parts = {};  ///< of a form, whose body is then empty
+    Client client = {};                ///< as the gate found
 
     /// A header by its lower-case name, or a query parameter; empty where there is none.
     [[nodiscard]] std::string header(const std::string& name) const;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cctype>
 #include <chrono>
+#include <cstdlib>
 #include <iostream>
 #include <thread>
 #include <utility>
@@ -22,6 +23,9 @@ namespace {
 
 // What open streams get at a stop to send their last piece; they are cut off then.
 constexpr std::chrono::seconds stop_grace{2};
+
+// What chunks and boundaries may add to a body.
+constexpr std::size_t framing_bytes = std::size_t{1} << 20U;
 
 bool has_body(const httplib::Request& request) {
     // Without either header a body has no end but the connection's, so there is none.
@@ -109,13 +113,30 @@ class ReceivedBody {
             bytes_ = std::string();
         return seen_ <= 2 * limit_;
     }
+    [[nodiscard]] std::size_t seen() const { return seen_; }
+    /// What comes next belongs to a new part of a form; its name and its start count too.
+    bool begin_part(const std::string& name, const std::string& file_name) {
+        end_part();
+        parts_.push_back({name, file_name, {}});
+        seen_ += name.size() + file_name.size() + sizeof(FormPart);
+        return seen_ <= 2 * limit_;
+    }
     [[nodiscard]] bool is_too_large() const { return seen_ > limit_; }
     std::string take_bytes() { return std::move(bytes_); }
+    std::vector<FormPart> take_parts() {
+        end_part();
+        return std::move(parts_);
+    }
 
   private:
+    void end_part() {
+        if (!parts_.empty()) parts_.back().body = std::exchange(bytes_, {});
+    }
+
     std::size_t limit_;
     std::size_t seen_ = 0;
-    std::string bytes_;
+    std::string bytes_;  ///< of the part in hand, for a form
+    std::vector<FormPart> parts_;
 };
 
 }  // namespace
@@ -166,6 +187,7 @@ class HttpServer::Parts {
     static GuardConfig guard_of(const HttpServerConfig& config) {
         GuardConfig guard{config.max_connections, config.patience, {}};
         guard.head.body_bytes = config.max_body_bytes;
+        guard.patience.body_bytes = 2 * config.max_body_bytes + framing_bytes;
         return guard;
     }
 
@@ -224,22 +246,46 @@ class HttpServer::Parts {
         Request request = to_request(from);
         if (!is_admitted(request, response)) return;
         if (has_body(from)) {
-            ReceivedBody body(config_.max_body_bytes);
-            const auto take = [&](const char* data, std::size_t size) { return body.take(data, size); };
-            // Forms are no part of the interface, but must be read to their end before they are refused.
-            const bool complete = from.is_multipart_form_data()
-                                      ? reader([](const httplib::MultipartFormData&) { return true; }, take)
-                                      : reader(take);
-            if (body.is_too_large()) response.status = 413;
-            if (!complete || body.is_too_large()) {
-                const int status = response.status >= 400 ? response.status : 400;
-                send(problem_reply({status, code_of_status(status), "the body could not be taken", "body"}),
-                     {}, response);
-                return;
-            }
-            request.body = body.take_bytes();
+            // A number, or its head would have been refused.
+            const std::size_t announced =
+                std::strtoull(request.header("content-length").c_str(), nullptr, 10);
+            if (auto refusal = check_body(request, announced)) return send(*std::move(refusal), {}, response);
+            if (auto refusal = take_body(request, from, response, reader))
+                return send(*std::move(refusal), {}, response);
         }
         send(router_.handle(request), token_, response);
+    }
+
+    std::optional<Reply> check_body(const Request& request, std::size_t bytes) const {
+        return config_.body_check ? config_.body_check(request, bytes) : std::nullopt;
+    }
+
+    /// Receives the request's body; why not, where it cannot be had.
+    std::optional<Reply> take_body(Request& request, const httplib::Request& from,
+                                   const httplib::Response& response,
+                                   const httplib::ContentReader& reader) const {
+        ReceivedBody body(config_.max_body_bytes);
+        std::optional<Reply> refusal;
+        const auto take = [&](const char* data, std::size_t size) {
+            if (!body.take(data, size)) return false;
+            refusal = check_body(request, body.seen());
+            return !refusal;
+        };
+        const bool is_form = from.is_multipart_form_data();
+        const bool complete =
+            is_form
+                ? reader([&](const auto& part) { return body.begin_part(part.name, part.filename); }, take)
+                : reader(take);
+        if (refusal) return refusal;
+        if (!complete || body.is_too_large()) {
+            const int status = body.is_too_large() ? 413 : response.status >= 400 ? response.status : 400;
+            return problem_reply({status, code_of_status(status), "the body could not be taken", "body"});
+        }
+        if (is_form)
+            request.parts = body.take_parts();
+        else
+            request.body = body.take_bytes();
+        return std::nullopt;
     }
 
     static constexpr const char* any_path = R"([\s\S]*)";

@@ -18,6 +18,10 @@ enum class AccessLog { off, on };
 /// is refused. Called from any number of threads.
 using Gate = std::function<std::optional<Reply>(Request&)>;
 
+/// Looks at how much of a body has been announced, and again at how much has come, and returns a reply where
+/// that is too much for this request. Called from any number of threads.
+using BodyCheck = std::function<std::optional<Reply>(const Request&, std::size_t bytes)>;
+
 struct HttpServerConfig {
     std::string address = "127.0.0.1";  ///< to listen on
     int port = 0;                       ///< 0: any free one
@@ -27,6 +31,7 @@ struct HttpServerConfig {
     Patience patience = {};                                ///< how long a peer may take
     std::size_t max_streams = 192;                         ///< open at a time; more are told 503
     Gate gate = {};                                        ///< may refuse a request; empty: none is refused
+    BodyCheck body_check = {};                             ///< may refuse a body; empty: none is refused
 };
 
 /// Carries requests to a router and its replies back. The only user of the HTTP library.

@@ -156,6 +156,12 @@ std::optional<Problem> problem_of_head(std::string_view head, const HeadLimits& 
     return problem_of_framing(framing, is_version_1_0);
 }
 
+bool is_chunked(std::string_view head) {
+    while (const auto line = take_line(head))
+        if (lower(line->substr(0, line->find(':'))) == "transfer-encoding") return true;
+    return false;
+}
+
 std::string without_ranges(std::string_view head) {
     std::string out;
     while (const auto line = take_line(head)) {

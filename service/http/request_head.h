@@ -17,6 +17,9 @@ struct HeadLimits {
     std::size_t body_bytes = std::size_t{256} << 20U;  ///< announced by Content-Length; more is 413
 };
 
+/// Whether a head without problems announces a chunked body.
+bool is_chunked(std::string_view head);
+
 /// The length of a request's head, its empty line included, once all of it is there. A line may end with a
 /// bare line feed here; `problem_of_head` refuses it.
 std::optional<std::size_t> head_length(std::string_view received);

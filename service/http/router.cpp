@@ -37,27 +37,55 @@ void Router::add(std::string_view method, std::string_view pattern, Handler hand
     routes_.push_back({std::string(method), segments_of(pattern), std::move(handler)});
 }
 
-Reply Router::handle(const Request& request) const {
-    const std::string method = request.method == "HEAD" ? "GET" : request.method;
-    const auto segments = segments_of(request.path);
-    std::string allowed;
+std::vector<std::pair<std::string, std::string>> Router::routes() const {
+    std::vector<std::pair<std::string, std::string>> all;
     for (const Route& route : routes_) {
-        const auto values = match(route.segments, segments);
-        if (!values) continue;
-        if (route.method == method) {
-            try {
-                return route.handler(request, *values);
-            } catch (...) {
-                return problem_reply(problem_of(std::current_exception()));
-            }
-        }
-        allowed += (allowed.empty() ? "" : ", ") + route.method;
-        if (route.method == "GET") allowed += ", HEAD";
+        std::string pattern;
+        for (const std::string& segment : route.segments) pattern += "/" + segment;
+        all.emplace_back(route.method, pattern);
     }
-    if (allowed.empty())
+    return all;
+}
+
+const Router::Route* Router::find(std::string_view method, const std::vector<std::string>& segments,
+                                  PathValues& values) const {
+    for (const Route& route : routes_) {
+        if (route.method != method) continue;
+        auto found = match(route.segments, segments);
+        if (!found) continue;
+        values = *std::move(found);
+        return &route;
+    }
+    return nullptr;
+}
+
+std::string Router::allowed(const std::vector<std::string>& segments) const {
+    std::string methods;
+    for (const Route& route : routes_) {
+        if (!match(route.segments, segments)) continue;
+        methods += (methods.empty() ? "" : ", ") + route.method;
+        if (route.method == "GET") methods += ", HEAD";
+    }
+    return methods;
+}
+
+Reply Router::handle(const Request& request) const {
+    const auto segments = segments_of(request.path);
+    PathValues values;
+    const Route* route = find(request.method, segments, values);
+    if (route == nullptr && request.method == "HEAD") route = find("GET", segments, values);
+    if (route != nullptr) {
+        try {
+            return route->handler(request, values);
+        } catch (...) {
+            return problem_reply(problem_of(std::current_exception()));
+        }
+    }
+    const std::string methods = allowed(segments);
+    if (methods.empty())
         return problem_reply({404, "not_found", "there is nothing at this address", request.path});
-    Reply reply = problem_reply({405, "method_not_allowed", "this address answers " + allowed, request.path});
-    reply.headers.emplace_back("Allow", allowed);
+    Reply reply = problem_reply({405, "method_not_allowed", "this address answers " + methods, request.path});
+    reply.headers.emplace_back("Allow", methods);
     return reply;
 }
 

@@ -1,7 +1,11 @@
 #include "service/jobs/event_log.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
+
+#include "service/http/http_message.h"
+#include "solver/base/json.h"
 
 namespace afterglow {
 
@@ -14,6 +18,10 @@ std::string_view name_of(EventKind kind) {
         case EventKind::image:
         case EventKind::final_image:
             return "image";
+        case EventKind::edit:
+            return "edit";
+        case EventKind::reused:
+            return "reused";
         case EventKind::warning:
             return "warning";
         case EventKind::error:
@@ -25,6 +33,33 @@ std::string_view name_of(EventKind kind) {
 }
 
 EventLog::EventLog(EventLogConfig config, std::uint64_t first) : config_(config), last_id_(first) {}
+
+EventLog::EventLog(EventLogConfig config, const std::string& kept) : config_(config) {
+    try {
+        const Json log = parse_json(kept, "event record");
+        lost_id_ = log.at("lost").get<std::uint64_t>();
+        last_id_ = log.at("last").get<std::uint64_t>();
+        for (const Json& event : log.at("events")) {
+            const auto id = event.at(0).get<std::uint64_t>();
+            events_[id] = {id, static_cast<EventKind>(event.at(1).get<int>()), event.at(2).get<int>(),
+                           event.at(3).get<std::string>()};
+            if (events_[id].kind == EventKind::image) preliminary_[events_[id].frame].push_back(id);
+        }
+    } catch (const Json::exception& e) {
+        throw Error(ErrorKind::invalid_input, "event record", e.what());
+    }
+    closed_ = !events_.empty() && events_.rbegin()->second.kind == EventKind::end;
+}
+
+std::string EventLog::kept() const {
+    const std::lock_guard lock(mutex_);
+    Json events = Json::array();
+    const std::set<std::uint64_t> dropped(superseded_.begin(), superseded_.end());
+    for (const auto& [id, event] : events_)
+        if (event.kind != EventKind::progress && !dropped.contains(id))
+            events.push_back({id, static_cast<int>(event.kind), event.frame, event.data});
+    return dump({{"lost", lost_id_}, {"last", last_id_}, {"events", std::move(events)}});
+}
 
 void EventLog::append(EventKind kind, std::string data, int frame) {
     {
@@ -52,6 +87,16 @@ void EventLog::reopen() {
     closed_ = false;
     // It is no longer the last one.
     std::erase_if(events_, [](const auto& known) { return known.second.kind == EventKind::end; });
+}
+
+void EventLog::forget() {
+    const std::lock_guard lock(mutex_);
+    if (!closed_ || events_.empty()) return;
+    const auto last = std::prev(events_.end());
+    if (last != events_.begin()) lost_id_ = std::prev(last)->first;
+    events_.erase(events_.begin(), last);
+    preliminary_.clear();
+    superseded_.clear();
 }
 
 /// Notes what the event `id` makes superfluous.
@@ -97,6 +142,11 @@ EventLog::Batch EventLog::wait_after(std::uint64_t id, std::chrono::milliseconds
 std::uint64_t EventLog::last_id() const {
     const std::lock_guard lock(mutex_);
     return last_id_;
+}
+
+std::size_t EventLog::size() const {
+    const std::lock_guard lock(mutex_);
+    return events_.size();
 }
 
 std::optional<Event> EventLog::end() const {

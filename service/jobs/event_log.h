@@ -15,7 +15,7 @@
 namespace afterglow {
 
 /// What an event of a job tells.
-enum class EventKind { job, progress, image, final_image, warning, error, end };
+enum class EventKind { job, progress, image, final_image, edit, reused, warning, error, end };
 
 /// The name clients know it by; both kinds of image are "image".
 std::string_view name_of(EventKind kind);
@@ -40,6 +40,10 @@ class EventLog {
   public:
     /// `first`: ids begin after it.
     explicit EventLog(EventLogConfig config = {}, std::uint64_t first = 0);
+    /// One that `kept` has written, as it was. Errors: invalid_input for other text.
+    EventLog(EventLogConfig config, const std::string& kept);
+    /// The log as text, without progress and without the preliminary images of finished frames.
+    [[nodiscard]] std::string kept() const;
 
     /// Adds an event; EventKind::end closes the log. After that nothing is added.
     void append(EventKind kind, std::string data, int frame = -1);
@@ -47,6 +51,8 @@ class EventLog {
     void close();
     /// Goes on after an end, for a job that is tried again.
     void reopen();
+    /// Drops all events but the last one where the log has ended: readers before it are told too_old.
+    void forget();
 
     enum class Status {
         open,     ///< more may come
@@ -66,6 +72,8 @@ class EventLog {
     [[nodiscard]] std::uint64_t last_id() const;
     /// The `end` event, once there is one.
     [[nodiscard]] std::optional<Event> end() const;
+    /// How many events are held.
+    [[nodiscard]] std::size_t size() const;
 
   private:
     void supersede(std::uint64_t id, EventKind kind, int frame);

@@ -24,6 +24,16 @@ bool has_ended(JobState state) {
     return state == JobState::succeeded || state == JobState::failed || state == JobState::cancelled;
 }
 
+bool may_be_edited(JobState state) {
+    return state != JobState::cancelled;
+}
+
+bool Job::is_stale(const FrameInfo& info) const {
+    for (std::size_t later = static_cast<std::size_t>(info.job_revision); later < edits.size(); ++later)
+        if (info.frame >= edits[later].first_frame) return true;
+    return false;
+}
+
 bool may_follow(JobState from, JobState to) {
     if (from == to || from == JobState::succeeded) return false;
     if (has_ended(from)) return to == JobState::queued;

@@ -34,7 +34,9 @@ Json time_or_null(const std::optional<Timestamp>& time) {
     return time ? Json(to_rfc3339(*time)) : Json(nullptr);
 }
 
-Json statistics_json(const SequenceStatistics& statistics) {
+}  // namespace
+
+Json to_json(const SequenceStatistics& statistics) {
     return {{"method", statistics.method},
             {"method_reason", statistics.method_reason},
             {"patches", statistics.patches},
@@ -43,10 +45,9 @@ Json statistics_json(const SequenceStatistics& statistics) {
             {"rays_per_patch", statistics.rays_per_patch},
             {"setup_ms", statistics.setup.count()},
             {"static_ms", statistics.static_pass.count()},
-            {"static_from_cache", statistics.static_from_cache}};
+            {"static_from_cache", statistics.static_from_cache},
+            {"exposure_ev", or_null(statistics.exposure_ev)}};
 }
-
-}  // namespace
 
 Json to_json(const Warning& warning) {
     return {{"place", warning.place}, {"message", warning.message}};
@@ -90,18 +91,24 @@ Json to_json(const Job& job) {
             {"scene", job.scene},
             {"paths", job.paths.empty() ? Json(nullptr) : Json(job.paths)},
             {"settings", to_json(job.settings)},
+            {"priority", job.priority},
             {"first_frame", job.frames.first},
             {"last_frame", job.frames.last},
+            {"frames_per_second", job.frames_per_second},
+            {"revision", job.revision()},
+            {"reused", job.edits.empty() ? Json(nullptr) : or_null(job.edits.back().reused)},
             {"frames_done", job.frames_done},
+            {"stale_frames", job.stale_frames},
             {"progress", job.progress},
             {"doing", job.doing},
             {"remaining_s", job.remaining ? Json(job.remaining->count()) : Json(nullptr)},
             {"created", to_rfc3339(job.created)},
             {"started", time_or_null(job.started)},
             {"ended", time_or_null(job.ended)},
+            {"frames_removed", time_or_null(job.frames_removed)},
             {"error", job.error ? to_json(*job.error) : Json(nullptr)},
             {"warnings", to_json(job.warnings)},
-            {"statistics", statistics_json(job.statistics)}};
+            {"statistics", to_json(job.statistics)}};
 }
 
 std::string picture_url(const std::string& job, const FrameInfo& info, PictureType type) {
@@ -110,22 +117,26 @@ std::string picture_url(const std::string& job, const FrameInfo& info, PictureTy
            "&rev=" + std::to_string(info.revision);
 }
 
-Json frame_json(const std::string& job, const FrameInfo& info) {
+Json frame_json(const Job& job, const FrameInfo& info) {
     return {{"frame", info.frame},
             {"revision", info.revision},
+            {"job_revision", info.job_revision},
             {"final", info.final},
+            {"stale", job.is_stale(info)},
             {"residual", info.residual},
             {"error_bound", or_null(info.error_bound)},
             {"picture_error", or_null(info.picture_error)},
-            {"png", picture_url(job, info, PictureType::png)},
-            {"exr", picture_url(job, info, PictureType::exr)}};
+            {"png", picture_url(job.id, info, PictureType::png)},
+            {"exr", picture_url(job.id, info, PictureType::exr)}};
 }
 
-Json image_json(const std::string& job, const FrameInfo& info) {
+Json image_json(const Job& job, const FrameInfo& info) {
     return {{"frame", info.frame},
             {"revision", info.revision},
-            {"url", picture_url(job, info, PictureType::png)},
-            {"exr", picture_url(job, info, PictureType::exr)},
+            {"job_revision", info.job_revision},
+            {"stale", job.is_stale(info)},
+            {"url", picture_url(job.id, info, PictureType::png)},
+            {"exr", picture_url(job.id, info, PictureType::exr)},
             {"residual", info.residual},
             {"error_bound", or_null(info.error_bound)},
             {"picture_error", or_null(info.picture_error)},

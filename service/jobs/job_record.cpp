@@ -44,7 +44,9 @@ Problem problem_of_record(const Json& json) {
             json.at("detail").get<std::string>(), json.value("place", "")};
 }
 
-SequenceStatistics statistics_of_record(const Json& json) {
+}  // namespace
+
+SequenceStatistics sequence_statistics_of(const Json& json) {
     SequenceStatistics statistics;
     statistics.method = json.value("method", "");
     statistics.method_reason = json.value("method_reason", "");
@@ -55,10 +57,10 @@ SequenceStatistics statistics_of_record(const Json& json) {
     statistics.setup = Milliseconds(json.value("setup_ms", 0.0));
     statistics.static_pass = Milliseconds(json.value("static_ms", 0.0));
     statistics.static_from_cache = json.value("static_from_cache", false);
+    if (const auto known = json.find("exposure_ev"); known != json.end() && known->is_number())
+        statistics.exposure_ev = known->get<float>();
     return statistics;
 }
-
-}  // namespace
 
 Json to_record(const Job& job) {
     const Json shown = to_json(job);
@@ -67,14 +69,17 @@ Json to_record(const Job& job) {
             {"scene", job.scene},
             {"paths", job.paths},
             {"settings", settings_record(job.settings)},
+            {"priority", job.priority},
             {"first_frame", job.frames.first},
             {"last_frame", job.frames.last},
+            {"frames_per_second", job.frames_per_second},
             {"owner", job.owner},
             {"key", job.idempotency_key},
             {"key_hash", job.idempotency_hash},
             {"created", micros_or_null(job.created)},
             {"started", micros_or_null(job.started)},
             {"ended", micros_or_null(job.ended)},
+            {"frames_removed", micros_or_null(job.frames_removed)},
             {"error", shown.at("error")},
             {"warnings", shown.at("warnings")},
             {"statistics", shown.at("statistics")}};
@@ -89,18 +94,22 @@ Job job_of_record(const Json& record) {
         job.scene = record.at("scene").get<std::string>();
         job.paths = record.at("paths").get<std::string>();
         job.settings = read_settings(JsonView(record.at("settings"), "job record"), Limits{});
+        job.priority = record.value("priority", 0);
         job.frames = {record.at("first_frame").get<int>(), record.at("last_frame").get<int>()};
+        const double asked = job.settings.sequence.frames_per_second;
+        job.frames_per_second = record.value("frames_per_second", asked > 0 ? asked : job.frames_per_second);
         job.owner = record.at("owner").get<std::string>();
         job.idempotency_key = record.at("key").get<std::string>();
         job.idempotency_hash = record.at("key_hash").get<std::string>();
         job.created = time_of(record.at("created")).value_or(Timestamp{});
         job.started = time_of(record.at("started"));
         job.ended = time_of(record.at("ended"));
+        job.frames_removed = time_of(record.value("frames_removed", Json()));
         if (!record.at("error").is_null()) job.error = problem_of_record(record.at("error"));
         for (const Json& warning : record.at("warnings"))
             job.warnings.push_back(
                 {warning.at("place").get<std::string>(), warning.at("message").get<std::string>()});
-        job.statistics = statistics_of_record(record.at("statistics"));
+        job.statistics = sequence_statistics_of(record.at("statistics"));
         return job;
     } catch (const Json::exception& e) {
         throw Error(ErrorKind::invalid_input, "job record", e.what());

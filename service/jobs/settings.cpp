@@ -86,6 +86,14 @@ JobSettings read_settings(const JsonView& settings, const Limits& limits) {
     return out;
 }
 
+std::optional<int> read_priority(const JsonView& patch) {
+    if (!patch.value().is_object()) patch.fail("expected an object");
+    patch.allow_only({"priority"});
+    const auto field = patch.find("priority");
+    if (!field) return std::nullopt;
+    return field->value().is_null() ? 0 : static_cast<int>(field->as_integer_in(-10, 10));
+}
+
 JobRequest read_job_request(const JsonView& request, const Limits& limits) {
     request.allow_only({"scene", "paths", "settings"});
     JobRequest out;

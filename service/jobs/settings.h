@@ -19,6 +19,10 @@ struct JobRequest {
 /// not_found or too_large at the field, also for fields that do not exist. Thread-safety: pure.
 JobRequest read_job_request(const JsonView& request, const Limits& limits);
 
+/// Reads a change of a job, a merge patch (RFC 7396) whose only member is `priority`, −10 to 10 or null for
+/// 0; nothing where it has none. Errors: invalid_input naming the field.
+std::optional<int> read_priority(const JsonView& patch);
+
 /// Reads the settings alone.
 JobSettings read_settings(const JsonView& settings, const Limits& limits);
 

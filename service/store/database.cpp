@@ -25,6 +25,16 @@ constexpr std::array migrations = {
     // For a change that can always be made, to see whether any can.
     "CREATE TABLE probe (number INTEGER NOT NULL);"
     "INSERT INTO probe VALUES (0);",
+    // Each row is one request's edits; each frame says after how many of them it was computed.
+    "CREATE TABLE edits (job TEXT NOT NULL, revision INTEGER NOT NULL, first_frame INTEGER NOT NULL, body "
+    "TEXT NOT NULL, reused REAL, PRIMARY KEY (job, revision)) WITHOUT ROWID;"
+    "ALTER TABLE frames ADD COLUMN job_revision INTEGER NOT NULL DEFAULT 0;",
+    "ALTER TABLE jobs ADD COLUMN strikes INTEGER NOT NULL DEFAULT 0;"
+    "ALTER TABLE jobs ADD COLUMN strike_frame INTEGER NOT NULL DEFAULT 0;",
+    // The events of jobs that have ended, each job's as one text; and what jobs are looked for by.
+    "CREATE TABLE event_logs (job TEXT PRIMARY KEY, body TEXT NOT NULL) WITHOUT ROWID;"
+    "CREATE INDEX jobs_by_key ON jobs (json_extract(body, '$.owner'), json_extract(body, '$.key'));"
+    "CREATE INDEX jobs_by_state ON jobs (json_extract(body, '$.state'));",
 };
 
 constexpr int busy_ms = 5000;

@@ -38,18 +38,21 @@ void FrameJournal::flush() {
     changed_.wait(lock, [&] { return done_ >= until; });
 }
 
-std::map<std::string, std::vector<FrameInfo>> durable_frames(Database& database) {
-    std::map<std::string, std::vector<FrameInfo>> frames;
-    for (const Row& row : database.ask("SELECT job, frame, revision, residual, error_bound, picture_error, "
-                                       "seconds FROM frames ORDER BY job, frame")) {
-        FrameInfo info{static_cast<int>(as_integer(row[1])),
-                       static_cast<int>(as_integer(row[2])),
+std::vector<FrameInfo> durable_frames(Database& database, const std::string& job) {
+    std::vector<FrameInfo> frames;
+    for (const Row& row :
+         database.ask("SELECT frame, revision, residual, error_bound, picture_error, seconds, "
+                      "job_revision FROM frames WHERE job = ?1 ORDER BY frame",
+                      {job})) {
+        FrameInfo info{static_cast<int>(as_integer(row[0])),
+                       static_cast<int>(as_integer(row[1])),
                        true,
-                       as_real(row[3]).value_or(0),
-                       as_real(row[4]),
-                       as_real(row[5])};
-        info.seconds = as_real(row[6]).value_or(0);
-        frames[as_text(row[0])].push_back(info);
+                       as_real(row[2]).value_or(0),
+                       as_real(row[3]),
+                       as_real(row[4])};
+        info.seconds = as_real(row[5]).value_or(0);
+        info.job_revision = static_cast<int>(as_integer(row[6]));
+        frames.push_back(info);
     }
     return frames;
 }
@@ -78,9 +81,10 @@ void FrameJournal::commit(const std::vector<Entry>& group) {
         make_durable(files);
         database_.together([&] {
             for (const auto& [job, info, unused] : group)
-                database_.change("INSERT OR REPLACE INTO frames VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
+                database_.change("INSERT OR REPLACE INTO frames VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
                                  {job, std::int64_t{info.frame}, std::int64_t{info.revision}, info.residual,
-                                  cell_of(info.error_bound), cell_of(info.picture_error), info.seconds});
+                                  cell_of(info.error_bound), cell_of(info.picture_error), info.seconds,
+                                  std::int64_t{info.job_revision}});
         });
     } catch (...) {
         for (const Entry& entry : group) on_failure_(entry, std::current_exception());

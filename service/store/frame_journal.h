@@ -5,7 +5,6 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -16,8 +15,8 @@
 
 namespace afterglow {
 
-/// The durable frames of a database, by job and in order.
-std::map<std::string, std::vector<FrameInfo>> durable_frames(Database& database);
+/// The durable frames of a job, in order.
+std::vector<FrameInfo> durable_frames(Database& database, const std::string& job);
 
 /// Makes final pictures durable in groups: their files first, then a row each, all of a group in one commit.
 /// A picture without a row is as if it had never been. Thread-safety: all members.
@@ -42,8 +41,8 @@ class FrameJournal {
     void add(Entry entry);
     /// Waits until everything added before is durable or has failed.
     void flush();
-    /// The durable frames, by job.
-    std::map<std::string, std::vector<FrameInfo>> load() { return durable_frames(database_); }
+    /// The durable frames of a job, in order.
+    std::vector<FrameInfo> frames_of(const std::string& job) { return durable_frames(database_, job); }
 
   private:
     void loop();

@@ -22,18 +22,6 @@ std::string id_of(std::string_view bytes, const SceneUpload& upload) {
     return content_id(how + sha256(bytes));
 }
 
-StoredScene describe(const std::string& id, const SceneUpload& upload, std::uint64_t bytes,
-                     const World& world) {
-    StoredScene scene{id, upload, bytes, 0, 0, {}, 0, 0, {}};
-    for (const Body& body : world.bodies) scene.triangles += body.triangles.size();
-    scene.actors = world.bodies.empty() ? 0 : world.bodies.size() - 1;
-    for (const PlacedCamera& camera : world.cameras) scene.cameras.push_back(camera.camera.name);
-    scene.frames_per_second = world.frames_per_second;
-    scene.last_frame = last_frame_of(world, SequenceConfig{});
-    scene.warnings = world.warnings;
-    return scene;
-}
-
 /// What is kept in the database of a scene; the bytes are a file.
 Json to_record(const StoredScene& scene) {
     Json record = to_json(scene);
@@ -51,40 +39,53 @@ StoredScene scene_of_record(const Json& record) {
     scene.upload.load.obj_unit_m = record.at("obj_unit_m").get<double>();
     scene.upload.load.obj_up = static_cast<UpAxis>(record.at("obj_up").get<int>());
     scene.bytes = record.at("bytes").get<std::uint64_t>();
-    scene.triangles = record.at("triangles").get<std::uint64_t>();
-    scene.actors = record.at("actors").get<std::uint64_t>();
-    scene.cameras = record.at("cameras").get<std::vector<std::string>>();
-    scene.frames_per_second = record.at("frames_per_second").get<double>();
-    scene.last_frame = record.at("last_frame").get<int>();
+    scene.survey.triangles = record.at("triangles").get<std::uint64_t>();
+    scene.survey.actors = record.at("actors").get<std::uint64_t>();
+    scene.survey.cameras = record.at("cameras").get<std::vector<std::string>>();
+    scene.survey.frames_per_second = record.at("frames_per_second").get<double>();
+    scene.survey.last_frame = record.at("last_frame").get<int>();
     for (const Json& warning : record.at("warnings"))
-        scene.warnings.push_back(
+        scene.survey.warnings.push_back(
             {warning.at("place").get<std::string>(), warning.at("message").get<std::string>()});
     return scene;
 }
+
+/// A file that is being looked at and does not belong yet.
+struct Arrival {
+    Arrival(std::filesystem::path at, std::string_view bytes) : path(std::move(at)) { put_file(path, bytes); }
+    ~Arrival() {
+        std::error_code ignored;
+        std::filesystem::remove(path, ignored);
+    }
+    Arrival(const Arrival&) = delete;
+    Arrival& operator=(const Arrival&) = delete;
+
+    std::filesystem::path path;
+};
 
 }  // namespace
 
 Json to_json(const StoredScene& scene) {
     Json warnings = Json::array();
-    for (const Warning& warning : scene.warnings)
+    for (const Warning& warning : scene.survey.warnings)
         warnings.push_back({{"place", warning.place}, {"message", warning.message}});
     return {{"id", scene.id},
             {"name", scene.upload.name},
             {"bytes", scene.bytes},
-            {"triangles", scene.triangles},
-            {"actors", scene.actors},
-            {"cameras", scene.cameras},
-            {"frames_per_second", scene.frames_per_second},
-            {"last_frame", scene.last_frame},
+            {"triangles", scene.survey.triangles},
+            {"actors", scene.survey.actors},
+            {"cameras", scene.survey.cameras},
+            {"frames_per_second", scene.survey.frames_per_second},
+            {"last_frame", scene.survey.last_frame},
             {"warnings", std::move(warnings)}};
 }
 
-SceneStore::SceneStore(std::filesystem::path folder, Reader reader, Database* database)
-    : folder_(std::move(folder)), reader_(std::move(reader)), database_(database) {
-    if (!reader_)
-        reader_ = [](std::string_view bytes, const SceneUpload& upload) {
-            return read_scene(bytes, upload.format, upload.name, upload.load);
-        };
+SceneStore::SceneStore(std::filesystem::path folder, Surveyor surveyor, Database* database,
+                       SceneReader reader)
+    : folder_(std::move(folder)),
+      surveyor_(std::move(surveyor)),
+      reader_(std::move(reader)),
+      database_(database) {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (error) throw Error(ErrorKind::io, folder_.string(), error.message());
@@ -121,13 +122,12 @@ SceneStore::Added SceneStore::add(std::string_view bytes, const SceneUpload& upl
                                   std::uint64_t max_triangles) {
     const std::string id = id_of(bytes, upload);
     if (auto known = find(id)) return {*std::move(known), Added::Outcome::known};
-    const World world = assemble(reader_(bytes, upload), upload.load.collinear_tolerance_m,
-                                 upload.load.collinear_tolerance_rad);
-    StoredScene scene = describe(id, upload, bytes.size(), world);
-    if (scene.triangles > max_triangles)
+    const Arrival arrival(file_of("arrival-" + std::to_string(++arrivals_)), bytes);
+    StoredScene scene{id, upload, bytes.size(), surveyor_({arrival.path, upload, {}}, 0)};
+    if (scene.survey.triangles > max_triangles)
         throw Error(ErrorKind::too_large, upload.name,
-                    "it has " + std::to_string(scene.triangles) + " triangles, more than the limit of " +
-                        std::to_string(max_triangles));
+                    "it has " + std::to_string(scene.survey.triangles) +
+                        " triangles, more than the limit of " + std::to_string(max_triangles));
 
     const std::lock_guard lock(mutex_);
     if (!scenes_.contains(id))
@@ -161,18 +161,29 @@ bool SceneStore::has_paths(const std::string& id) const {
     return paths_.contains(id);
 }
 
-World SceneStore::world(const std::string& scene, const std::string& paths,
-                        const std::optional<Rgb>& background) const {
+WorldSource SceneStore::source(const std::string& scene, const std::string& paths,
+                               const std::optional<Rgb>& background) const {
     const auto stored = find(scene);
     if (!stored) throw Error(ErrorKind::not_found, "scene", "there is no scene " + scene);
     if (!paths.empty() && !has_paths(paths))
         throw Error(ErrorKind::not_found, "paths", "there are no paths " + paths);
+    WorldSource source{file_of(scene), stored->upload, paths.empty() ? "" : file_of(paths)};
+    if (background) source.upload.load.background = background;
+    return source;
+}
 
-    SceneUpload upload = stored->upload;
-    if (background) upload.load.background = background;
-    Scene read = reader_(read_file(file_of(scene)), upload);
-    if (!paths.empty()) apply_paths(read, read_file(file_of(paths)), paths_name, upload.load);
-    return assemble(read, upload.load.collinear_tolerance_m, upload.load.collinear_tolerance_rad);
+World SceneStore::world(const std::string& scene, const std::string& paths,
+                        const std::optional<Rgb>& background) const {
+    return read_world(source(scene, paths, background), reader_);
+}
+
+SceneSurvey SceneStore::survey(const std::string& scene, const std::string& paths,
+                               const std::optional<Rgb>& background, double frames_per_second) const {
+    const WorldSource from = source(scene, paths, background);
+    // What was found when it was uploaded.
+    if (paths.empty() && !background && frames_per_second == 0)
+        if (auto stored = find(scene)) return std::move(stored->survey);
+    return surveyor_(from, frames_per_second);
 }
 
 }  // namespace afterglow

@@ -47,14 +47,14 @@ export async function post_json(path, value = {}, headers = {}) {
 }
 
 const type_of_extension = {
-  glb: "model/gltf-binary", gltf: "model/gltf+json", obj: "model/obj", json: "application/json",
+  glb: "model/gltf-binary", gltf: "model/gltf+json", obj: "model/obj", json: "application/json", zip: "application/zip",
 };
 
 /** Uploads a scene file and returns what the service says of it. */
 export async function upload_scene(file) {
   const extension = file.name.split(".").pop().toLowerCase();
   const type = type_of_extension[extension];
-  if (!type) throw new ProblemError({ detail: "expected a .glb, .gltf, .obj or .json file", place: file.name });
+  if (!type) throw new ProblemError({ detail: "expected a .glb, .gltf, .obj or .json file, or a .zip with all that belongs to it", place: file.name });
   const path = `/v1/scenes?name=${encodeURIComponent(file.name)}`;
   return (await request("POST", path, { body: file, headers: { "Content-Type": type } })).json();
 }

@@ -69,6 +69,8 @@ export function make_job_list({ list, form, on_choose, on_jobs, on_problem }) {
   keep_fresh();
 
   return {
+    /** Something of a job has changed that the list shows. */
+    refresh: () => refresh().catch(() => {}),
     choose(id) {
       chosen = id;
       refresh().catch(on_problem);

@@ -1,6 +1,7 @@
 // What is known of a job, in words, and the buttons that steer it.
 
 import { post_json } from "./api.js";
+import { said_of } from "./edit_panel.js";
 import { percent } from "./job_view.js";
 
 const steps = {
@@ -16,6 +17,7 @@ export function facts_of(job) {
     ["Progress", `${percent(job.progress)} ${job.doing ?? ""}`.trim()],
   ];
   if (job.remaining_s != null) facts.push(["Remaining", `${Math.ceil(job.remaining_s)} s`]);
+  if (job.revision) facts.push(["Edits", said_of(job)]);
   const known = job.statistics ?? {};
   if (known.method) facts.push(["Method", known.method_reason ? `${known.method}: ${known.method_reason}` : known.method]);
   if (known.patches) facts.push(["Patches", `${count(known.patches)}, ${count(known.actor_patches)} of them on actors`]);

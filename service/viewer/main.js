@@ -1,11 +1,12 @@
 // Joins the parts of the page: one job is followed, and everything shows it.
 
-import { set_token } from "./api.js";
+import { get_json, set_token } from "./api.js";
 import { follow } from "./events.js";
 import { make_chart } from "./chart.js";
+import { make_edit_panel } from "./edit_panel.js";
 import { make_job_list } from "./job_list.js";
 import { make_job_panel } from "./job_panel.js";
-import { make_job_view, take_event } from "./job_view.js";
+import { make_job_view, points_of, take_event } from "./job_view.js";
 import { make_player } from "./player.js";
 import { make_strip } from "./strip.js";
 
@@ -40,6 +41,11 @@ const player = make_player(
   show_problem,
 );
 const panel = make_job_panel({ facts: element("facts"), controls: element("controls"), on_step: choose_job, on_problem: show_problem });
+const edit_panel = make_edit_panel({
+  form: element("edit"), on_problem: show_problem,
+  // The events of a job that had ended have ended too.
+  on_edited: (job, before) => before.ended && view?.job.id === job.id && choose_job(job.id),
+});
 // Nothing waits for the chart's library: a form that nobody listens to yet would be sent the browser's way.
 let chart = null;
 make_chart(element("chart"), (frame) => player.choose(frame)).then((made) => {
@@ -54,11 +60,21 @@ function show_soon() {
   is_due = true;
   requestAnimationFrame(() => {
     is_due = false;
+    if (!view) return;
     player.show(view);
     strip.show(view, player.frame());
     panel.show(view.job);
+    edit_panel.show(view.job);
     chart?.show(view.points);
   });
+}
+
+/** What was not watched: how near the finished frames of a job that has ended came, and when. */
+async function show_history(id) {
+  const { frames } = await get_json(`/v1/jobs/${id}/convergence`).catch(() => ({ frames: [] }));
+  if (view?.job.id !== id || view.points.length) return;
+  view.points = points_of(frames);
+  show_soon();
 }
 
 async function choose_job(id) {
@@ -73,6 +89,8 @@ async function choose_job(id) {
       on_connection: show_connection,
       on_event(name, data) {
         view = view ? take_event(view, name, data, performance.now() / 1000) : make_job_view(data);
+        if (name === "job") jobs.refresh();
+        if (name === "snapshot" && data.ended) show_history(id);
         show_soon();
       },
     });

@@ -5,8 +5,6 @@ import { get_json } from "./api.js";
 import { make_pictures } from "./pictures.js";
 import { draw } from "./stage.js";
 
-const usual_frames_per_second = 24;
-
 /** The finished frame after `frame`, beginning anew behind the last one. */
 export function next_final(frames, frame) {
   return frames.find((f) => f > frame) ?? frames[0] ?? frame;
@@ -40,7 +38,8 @@ export function make_player(elements, on_frame, on_problem) {
     drawing = { again: true };
     while (drawing.again) {
       drawing.again = false;
-      await draw_now().catch(on_problem);
+      // A picture that has gone has a successor, whose event is on its way.
+      await draw_now().catch((problem) => problem.status !== 410 && on_problem(problem));
     }
     drawing = null;
   };
@@ -63,7 +62,7 @@ export function make_player(elements, on_frame, on_problem) {
     const tick = async () => {
       const began = performance.now();
       await choose(next_final(final_frames(view), frame));
-      const period_ms = 1000 / (view.job.settings.fps ?? usual_frames_per_second);
+      const period_ms = 1000 / (view.job.frames_per_second);
       if (timer !== null) timer = setTimeout(tick, Math.max(0, period_ms - (performance.now() - began)));
     };
     elements.play.setAttribute("aria-pressed", "true");

@@ -3,7 +3,8 @@
 
 import { describe, state_of } from "./job_view.js";
 
-const order = ["queued", "coarse", "converged"];
+const order = ["queued", "stale", "coarse", "converged"];
+const stale_height = 0.5;  // so that stale frames are told apart without colours too
 
 /** Draws on `canvas` and calls `on_choose(frame)` when the user picks one by pointer or keys. */
 export function make_strip(canvas, on_choose) {
@@ -50,7 +51,8 @@ export function make_strip(canvas, on_choose) {
       for (let k = from; k < to; ++k) worst = Math.min(worst, order.indexOf(state_of(view, view.first + k)));
       pen.fillStyle = colours[order[worst]];
       const gap = columns < width / 4 ? 1 : 0;
-      pen.fillRect((column * width) / columns, 0, width / columns - gap, height);
+      const tall = order[worst] === "stale" ? stale_height * height : height;
+      pen.fillRect((column * width) / columns, height - tall, width / columns - gap, tall);
     }
     const x = ((chosen - view.first + 0.5) * width) / count;
     pen.fillStyle = "#fff";

@@ -18,6 +18,4 @@ else()
 endif()
 
 set(viewer_source ${made}/viewer_files.cpp)
-add_custom_command(OUTPUT ${viewer_source} VERBATIM
-    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${viewer_source} "-DFILES=${viewer_files}" -P ${folder}/embed.cmake
-    DEPENDS ${viewer_files} ${folder}/embed.cmake)
+embed_files(${viewer_source} service/viewer/viewer_files.h viewer_files ${viewer_files})

@@ -1,7 +1,6 @@
 #include "service/viewer/viewer_routes.h"
 
 #include <algorithm>
-#include <functional>
 #include <string>
 
 #include "service/viewer/viewer_files.h"
@@ -18,19 +17,10 @@ constexpr auto content_policy =
 
 Reply get_file(const Request& request, std::string_view name) {
     const auto files = viewer_files();
-    const auto found = std::ranges::find(files, name, &ViewerFile::name);
+    const auto found = std::ranges::find(files, name, &EmbeddedFile::name);
     if (found == files.end()) throw ProblemError({404, "not_found", "no such file", std::string(name)});
-
-    const std::string tag = '"' + std::to_string(std::hash<std::string_view>{}(found->bytes)) + '"';
-    Reply reply;
-    reply.headers = {
-        {"Content-Security-Policy", content_policy}, {"Cache-Control", "no-cache"}, {"ETag", tag}};
-    if (request.header("if-none-match") == tag) {
-        reply.status = 304;
-        return reply;
-    }
-    reply.content_type = found->content_type;
-    reply.body = found->bytes;
+    Reply reply = file_reply(request, *found);
+    reply.headers.emplace_back("Content-Security-Policy", content_policy);
     return reply;
 }
 

@@ -81,8 +81,10 @@ void Encoder::loop() {
 
 void Encoder::store(const PictureTask& task) {
     const Revision& revision = task.revision;
-    const FrameInfo info{revision.frame,   revision.revision,      revision.final, revision.residual,
-                         task.error_bound, revision.picture_error, task.seconds};
+    const FrameInfo info{revision.frame,   revision_of_picture(task.job_revision, revision.revision),
+                         revision.final,   revision.residual,
+                         task.error_bound, revision.picture_error,
+                         task.seconds,     task.job_revision};
     try {
         const EncodedPicture picture{
             encode_png(revision.radiance.width, revision.radiance.height, revision.srgb),

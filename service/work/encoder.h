@@ -25,7 +25,8 @@ struct PictureTask {
     Revision revision;
     std::optional<double> error_bound;  ///< of final pictures
     Keep keep = Keep::until_superseded;
-    double seconds = 0;  ///< that the frame took, of final pictures
+    double seconds = 0;    ///< that the frame took, of final pictures
+    int job_revision = 0;  ///< of the job that it shows
 };
 
 /// Who is told about what became of a picture; called from the encoder's thread.

@@ -46,18 +46,22 @@ Worker::~Worker() {
 
 void Worker::halt() {
     std::string in_hand;
+    std::map<std::string, std::stop_source> runs;
     {
         const std::lock_guard lock(mutex_);
         stopping_ = true;
         in_hand = in_hand_;
+        runs = abandon_;
     }
     changed_.notify_all();
+    for (auto& [id, stop] : runs) stop.request_stop();
     if (!in_hand.empty()) jobs_.interrupt(in_hand);
 }
 
 void Worker::submit(const std::string& job) {
     {
         const std::lock_guard lock(mutex_);
+        if (const auto known = jobs_.find(job)) schedule_.set_priority(job, known->priority);
         schedule_.remove(job);
         schedule_.add(job);
         submitted_.insert(job);
@@ -65,18 +69,56 @@ void Worker::submit(const std::string& job) {
     changed_.notify_all();
 }
 
+bool Worker::set_priority(const std::string& job, int priority) {
+    // One change after the other, so that the schedule ends with what the job shows.
+    const std::lock_guard lock(mutex_);
+    if (!jobs_.set_priority(job, priority)) return false;
+    // Of others it is asked for when they are added.
+    if (schedule_.contains(job)) schedule_.set_priority(job, priority);
+    return true;
+}
+
+void Worker::take_edits(const std::string& job) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (const auto known = jobs_.find(job)) schedule_.set_priority(job, known->priority);
+        if (!schedule_.contains(job)) schedule_.add(job);
+        edited_.insert(job);
+    }
+    changed_.notify_all();
+}
+
 bool Worker::pause(const std::string& job) {
     const bool paused = jobs_.pause(job);
+    if (paused) abandon(job);
     changed_.notify_all();
     return paused;
 }
 
 bool Worker::cancel(const std::string& job) {
     const bool ended = jobs_.end(job, JobState::cancelled);
+    if (ended) abandon(job);
     encoder_.forget(job);
     // The job keeps its place in the schedule until the compute thread meets it there and frees its state.
     changed_.notify_all();
     return ended;
+}
+
+/// Nobody wants the job's run any more.
+void Worker::abandon(const std::string& id) {
+    std::stop_source stop(std::nostopstate);
+    {
+        const std::lock_guard lock(mutex_);
+        if (const auto it = abandon_.find(id); it != abandon_.end()) stop = it->second;
+    }
+    stop.request_stop();
+}
+
+std::stop_token Worker::new_abandon_token(const std::string& id) {
+    const std::lock_guard lock(mutex_);
+    std::stop_source stop;
+    if (stopping_) stop.request_stop();
+    return abandon_.insert_or_assign(id, stop).first->second.get_token();
 }
 
 void Worker::loop() {
@@ -95,31 +137,60 @@ std::optional<std::string> Worker::wait_for_turn() {
     if (stopping_) return std::nullopt;
     in_hand_ = *next;
     if (submitted_.erase(*next) > 0) running_.erase(*next);
+    edited_.erase(*next);
+    // Those that gave way to a higher priority begin anew after their last finished frame.
+    std::erase_if(running_, [&](const auto& running) { return !schedule_.is_resident(running.first); });
     return next;
 }
 
 void Worker::take_turn(const std::string& id) {
+    // Asked for first, so that whatever changes the job from here on stops the work.
+    const std::stop_token stop = jobs_.stop_token(id);
     const auto job = jobs_.find(id);
     bool goes_on = false;
     try {
         if (job && is_active(job->state)) {
-            advance(*job);
+            advance(*job, stop);
             goes_on = running_.contains(id);
         }
+    } catch (const ChildDied& death) {
+        goes_on = strike(id, death);
     } catch (...) {
-        // Whoever stopped the work has said what becomes of the job.
-        if (!is_cancellation(std::current_exception()))
+        // Whoever stopped the work has said what becomes of the job; where that was an edit, it goes on.
+        if (is_cancellation(std::current_exception())) {
+            const auto now = jobs_.find(id);
+            goes_on = now && is_active(now->state) && now->revision() > job->revision();
+        } else {
             jobs_.end(id, JobState::failed, problem_of(std::current_exception()));
+        }
     }
     if (goes_on) return;
     running_.erase(id);
     leave(id);
 }
 
-/// The job has no more turns, unless it was submitted again while its computation came to a stop.
+/// A process that computed the job has ended: whether the job may have another.
+bool Worker::strike(const std::string& id, const ChildDied& death) {
+    const int frame = running_.at(id).next_frame;
+    running_.erase(id);
+    const int strikes = jobs_.note_strike(id, frame);
+    const std::string told = death.what();
+    const char* code = death.cause() == ChildDied::Cause::memory ? "job_out_of_memory" : "worker_died";
+    const std::string place = "frame " + std::to_string(frame);
+    if (strikes >= config_.max_strikes) {
+        jobs_.end(id, JobState::failed,
+                  Problem{500, code, told + ", " + std::to_string(strikes) + " times in all", place});
+        return false;
+    }
+    jobs_.note_warnings(id, {{place, told + " and begins anew (" + std::to_string(strikes) + ")"}});
+    return true;
+}
+
+/// The job has no more turns, unless it was submitted or edited while its computation came to a stop.
 void Worker::leave(const std::string& id) {
     const std::lock_guard lock(mutex_);
-    if (!submitted_.contains(id)) schedule_.remove(id);
+    abandon_.erase(id);
+    if (!submitted_.contains(id) && !edited_.contains(id)) schedule_.forget(id);
 }
 
 /// Where to go on after a pause, a failure or a restart, once frames that wait to be stored have been. Those
@@ -133,35 +204,54 @@ int Worker::first_frame_of(const Job& job) {
 }
 
 /// Computes the job's next frame; a job that is through is no longer in `running_`.
-void Worker::advance(const Job& job) {
+void Worker::advance(const Job& job, const std::stop_token& stop) {
     auto it = running_.find(job.id);
+    const bool is_edited = it != running_.end() && it->second.revision < job.revision();
     if (it == running_.end()) it = running_.emplace(job.id, Running{nullptr, first_frame_of(job)}).first;
     Running& running = it->second;
+    if (is_edited) running.next_frame = first_frame_of(job);
     const int frame = running.next_frame;
     const int frames_before = frame - job.frames.first;
-    const Context context(config_.threads, jobs_.stop_token(job.id), [&](const Progress& progress) {
+    const Context context(config_.threads, stop, [&](const Progress& progress) {
         jobs_.note_progress(job.id, frame, frames_before, progress);
     });
     // Preparing counts as the first twentieth of the first frame.
-    if (frame > job.frames.last) {
-        jobs_.start(job.id);
-    } else if (!running.run) {
-        if (!jobs_.start(job.id)) throw Error(ErrorKind::cancelled, "", "stopped on request");
-        running.run = make_run_(job, context.part(0, 0.05));
+    jobs_.start(job.id);
+    if (frame <= job.frames.last) {
+        context.check_stop();
+        if (!running.run) {
+            running.run = make_run_(job, context.part(0, 0.05), new_abandon_token(job.id));
+            running.revision = job.revision();
+            for (int revision = 1; revision <= running.revision; ++revision)
+                jobs_.note_reused(job.id, revision, 0);
+        }
+        take_over(job, running, context.part(0, 0.05));
         compute_frame(job, running, context.part(0.05, 1));
-    } else {
-        compute_frame(job, running, context);
     }
     if (running.next_frame <= job.frames.last) return;
-    encoder_.after_pictures([&jobs = jobs_, id = job.id] { jobs.end(id, JobState::succeeded); });
+    encoder_.after_pictures(
+        [&jobs = jobs_, id = job.id, revision = job.revision()] { jobs.succeed(id, revision); });
     running_.erase(it);
+}
+
+/// Brings a run up to the job as it is, edit by edit: what is interrupted goes on behind the last one taken.
+void Worker::take_over(const Job& job, Running& running, const Context& context) {
+    while (running.revision < job.revision()) {
+        const std::vector<Edit>& edits = job.edits[static_cast<std::size_t>(running.revision)].edits;
+        for (; running.applied < edits.size(); ++running.applied)
+            running.kept *= running.run->apply(edits[running.applied], context).lines_reused;
+        ++running.revision;
+        jobs_.note_reused(job.id, running.revision, running.kept);
+        running.applied = 0;
+        running.kept = 1;
+    }
 }
 
 void Worker::compute_frame(const Job& job, Running& running, const Context& context) {
     // The final picture waits here for the error bound, which is known only at the end of the step.
     std::optional<PictureTask> final_picture;
     const auto sink = [&](const Revision& revision) {
-        PictureTask task{job.id, revision, std::nullopt, keep_of(job, revision)};
+        PictureTask task{job.id, revision, std::nullopt, keep_of(job, revision), 0, running.revision};
         if (revision.final)
             final_picture = std::move(task);
         else

@@ -1,6 +1,7 @@
-# Writes OUTPUT, a C++ source that holds the files of the list FILES as bytes. Run by the build:
-# cmake -DOUTPUT=… -DFILES=a;b -P embed.cmake
-set(types html "text/html; charset=utf-8" css "text/css; charset=utf-8" js "text/javascript; charset=utf-8")
+# Writes OUTPUT, a C++ source that holds the files of the list FILES as bytes and defines the function FUNCTION of HEADER.
+# Run by the build: cmake -DOUTPUT=… -DFILES=a;b -DHEADER=… -DFUNCTION=… -P embed.cmake
+set(types html "text/html; charset=utf-8" css "text/css; charset=utf-8" js "text/javascript; charset=utf-8"
+          json "application/json")
 set(arrays "")
 set(rows "")
 set(number 0)
@@ -17,4 +18,4 @@ foreach(file IN LISTS FILES)
     string(APPEND rows "    {\"${name}\", \"${type}\", {reinterpret_cast<const char*>(bytes_${number}), sizeof(bytes_${number})}},\n")
     math(EXPR number "${number} + 1")
 endforeach()
-file(WRITE ${OUTPUT} "#include \"service/viewer/viewer_files.h\"\n\nnamespace afterglow {\n\nnamespace {\n\n${arrays}\nconst ViewerFile files[] = {\n${rows}};\n\n}  // namespace\n\nstd::span<const ViewerFile> viewer_files() {\n    return files;\n}\n\n}  // namespace afterglow\n")
+file(WRITE ${OUTPUT} "#include \"${HEADER}\"\n\nnamespace afterglow {\n\nnamespace {\n\n${arrays}\nconst EmbeddedFile files[] = {\n${rows}};\n\n}  // namespace\n\nstd::span<const EmbeddedFile> ${FUNCTION}() {\n    return files;\n}\n\n}  // namespace afterglow\n")

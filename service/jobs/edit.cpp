@@ -1,0 +1,96 @@
+#include "service/jobs/edit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "service/base/overloaded.h"
+#include "solver/scene/default_camera.h"
+#include "solver/scene/furniture.h"
+#include "solver/scene/named.h"
+
+namespace afterglow {
+
+void resolve(Edit& edit, const World& uploaded) {
+    auto* light = std::get_if<LightEdit>(&edit.what);
+    if (light == nullptr || light->emission) return;
+    const Rgb emitted =
+        uploaded.materials[index_named(uploaded.materials, 0, light->material, "material")].emission;
+    if (max_channel(emitted) <= 0)
+        throw Error(ErrorKind::invalid_input, "emission_scale",
+                    "this material emits nothing in the scene; give its emission");
+    light->emission = emitted * static_cast<float>(light->emission_scale.value_or(1));
+    Json& source = edit.source["light"];
+    source["emission"] = {light->emission->r, light->emission->g, light->emission->b};
+}
+
+ObjectKind kind_of(const World& world, const std::string& node) {
+    const auto is_named = [&](const auto& element) { return element.name == node; };
+    if (std::any_of(world.pieces.begin(), world.pieces.end(), is_named)) return ObjectKind::piece;
+    if (std::any_of(world.bodies.begin() + 1, world.bodies.end(), is_named)) return ObjectKind::actor;
+    std::string names;
+    for (const FurniturePiece& piece : world.pieces) names += (names.empty() ? "" : ", ") + piece.name;
+    for (Index k = furniture + 1; k < world.bodies.size(); ++k)
+        names += (names.empty() ? "" : ", ") + world.bodies[k].name;
+    throw Error(ErrorKind::not_found, "node", "there is no object \"" + node + "\"; there are: " + names);
+}
+
+Path path_of(const World& world, const PathEdit& edit) {
+    const Index actor = index_named(world.bodies, furniture + 1, edit.node, "actor");
+    return with_keys(world.bodies[actor].path, edit.translation, edit.rotation);
+}
+
+Path path_of(const World& world, const MoveEdit& edit) {
+    const Index actor = index_named(world.bodies, furniture + 1, edit.node, "actor");
+    return shifted(world.bodies[actor].path, edit.shift);
+}
+
+Body object_of(const World& world, const AddEdit& edit) {
+    Body object = edit.object;
+    const Index material = index_named(world.materials, 0, edit.material, "material");
+    for (Triangle& triangle : object.triangles) triangle.material = material;
+    return object;
+}
+
+PlacedCamera camera_of(const World& world, const std::string& camera, const CameraEdit& edit) {
+    const std::string name = edit.camera.value_or(camera);
+    std::vector<Camera> cameras;
+    for (const PlacedCamera& placed : world.cameras) cameras.push_back(placed.camera);
+    PlacedCamera chosen = world.cameras[name.empty() ? 0 : index_named(cameras, 0, name, "camera")];
+    if (edit.view)
+        chosen.path.keys = {{0, {edit.view->position, looking_at(edit.view->position, edit.view->look_at)}}};
+    return chosen;
+}
+
+void apply(World& world, const Edit& edit) {
+    const auto change = Overloaded{
+        [&](const MoveEdit& move) {
+            if (kind_of(world, move.node) == ObjectKind::actor) {
+                set_path(world, move.node, 0, path_of(world, move));
+                return;
+            }
+            const Index piece = index_named(world.pieces, 0, move.node, "piece");
+            move_piece(world, piece, motion_of(world, piece, move.shift));
+        },
+        [&](const LightEdit& light) { set_emission(world, light.material, light.emission.value_or(Rgb(0))); },
+        [&](const MaterialEdit& material) {
+            set_reflectance(world, material.material, material.reflectance);
+        },
+        [](const CameraEdit&) {},
+        [&](const PathEdit& path) { set_path(world, path.node, path.from_s, path_of(world, path)); },
+        [&](const RemoveEdit& removed) {
+            remove_piece(world, index_named(world.pieces, 0, removed.node, "piece"));
+        },
+        [&](const AddEdit& added) { add_piece(world, object_of(world, added)); },
+    };
+    std::visit(change, edit.what);
+}
+
+int first_frame_changed(const Edit& edit, int first, double frames_per_second) {
+    const auto* path = std::get_if<PathEdit>(&edit.what);
+    if (path == nullptr || path->from_s <= 0) return first;
+    // A frame that shows the very time shows the new path.
+    const double frame = std::ceil(path->from_s * frames_per_second - 1e-6);
+    return std::max(first, static_cast<int>(std::min(frame, 1e9)));
+}
+
+}  // namespace afterglow
