@@ -10,7 +10,8 @@ import subprocess
 import sys
 import tempfile
 
-from reference_error import Chart, colours, data, error, frames
+from charts import Axis, Chart, Panel, percent
+from reference_error import colours, data, error, frames
 
 even_sizes_m = {"cornell-slide": [0.6, 0.4, 0.25, 0.16, 0.1], "living-room": [0.4, 0.25, 0.16, 0.1, 0.065]}
 
@@ -28,12 +29,16 @@ def render(program, scene, *settings):
 if __name__ == "__main__":
     if len(sys.argv) != 3:
         sys.exit(__doc__)
-    chart = Chart("What do patches buy that are small only where they must be?", "patches", (1000, 100_000), (0.005, 0.16))
-    chart.grid((1000, 3000, 10_000, 30_000, 100_000), (0.005, 0.01, 0.02, 0.04, 0.08, 0.16))
+    chart = Chart("What do patches buy that are small only where they must be?", 800, 360)
+    panel = chart.add(Panel((80, 50), (500, 250), Axis(1000, 100_000, (1000, 3000, 10_000, 30_000, 100_000)),
+                            Axis(0.005, 0.16, (0.005, 0.01, 0.02, 0.04, 0.08, 0.16), percent), "", "patches", "relative RMSE"))
+    names = []
     for scene in frames:
         even = [render(sys.argv[1], scene, "--patch-size", str(size)) for size in even_sizes_m[scene]]
         refined = render(sys.argv[1], scene)
-        chart.line(f"{scene}, even", even, colours[scene], "5 4")
-        chart.line(f"{scene}, refined", [refined], colours[scene])
+        panel.line(even, colours[scene], "5 4")
+        panel.dots([refined], colours[scene])
+        names += [(f"{scene}, even", colours[scene], "5 4"), (f"{scene}, refined: the dot", colours[scene], "none")]
         print(scene, "even", " ".join(f"{n}:{100 * e:.2f}%" for n, e in even), "refined", f"{refined[0]}:{100 * refined[1]:.2f}%")
+    chart.legend(592, 70, names, down=True)
     chart.write(sys.argv[2])

@@ -9,9 +9,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "solver/image/path.h"
 #include "solver/scene/load.h"
 #include "solver/sequence/sequence.h"
+#include "tests/bench/path_picture.h"
 
 namespace afterglow {
 namespace {
@@ -60,27 +60,10 @@ Pictures finest(const Run& run, std::uint64_t seed) {
 
 /// One frame by paths alone.
 Picture by_paths(const Run& run, int frame, int samples) {
-    const World& world = run.world;
-    const double time_s = frame / world.frames_per_second;
-    RayCaster caster(world);
-    caster.set_poses(poses_at(world, time_s));
-    // Patches serve only to find the lamps.
-    Surfaces surfaces = find_surfaces(world, {.facet_size_m = 1});
-    const SideMask all(surfaces.list.size(), {true, true});
-    const PatchMesh mesh = make_patches(world, std::move(surfaces), all, {.patch_size_m = 1});
-    std::vector<Material> materials;
-    for (Index m = 0; m < world.materials.size(); ++m) materials.push_back(material_at(world, m, time_s));
-    std::vector<Rgb> emission(mesh.size(), Rgb(0));
-    for (Index p = 0; p < mesh.size(); ++p)
-        if (is_emitter(world, mesh, p)) emission[p] = pi * materials[mesh.material(p)].emission;
-    const Lamps lamps = find_lamps(world, mesh);
-    const DirectLight direct(mesh, lamps, caster, emission);
-    const auto lights = lights_at(world, time_s);
-    const PathScene scene{&world, &caster, materials, &direct, lights, lift_for(world)};
     std::uint64_t rays = 0;
     const auto seed = 1 + static_cast<std::uint64_t>(frame);
-    return trace_picture(view_at(world.cameras.front(), time_s, run.edge, run.edge), scene,
-                         {samples, seed, {}}, rays, run.context)
+    return path_picture(run.world, frame / run.world.frames_per_second, run.edge, samples, seed, rays,
+                        run.context)
         .mean;
 }
 

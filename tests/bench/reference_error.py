@@ -17,16 +17,24 @@ def read(path):
     return np.asarray(image.read_image(0, 3, "float"), dtype=np.float64)
 
 
-def error(picture_path, scene):
-    """Pixels within one pixel of a visible lamp are left out."""
-    picture = read(picture_path)
-    a, b = (read(data / "reference" / f"{scene}_{frames[scene]:04}_{k}.exr") for k in (1, 2))
-    bright = (np.maximum(a, b) > 2.5).any(axis=2)
-    near_lamp = bright.copy()
+def grown(mask):
+    """With all eight neighbours."""
+    out = mask.copy()
     for dy in (-1, 0, 1):
         for dx in (-1, 0, 1):
-            near_lamp |= np.roll(np.roll(bright, dy, 0), dx, 1)
-    keep = ~near_lamp
+            out |= np.roll(np.roll(mask, dy, 0), dx, 1)
+    return out
+
+
+def usable(a, b):
+    """Pixels that are not within one pixel of a visible lamp."""
+    return ~grown((np.maximum(a, b) > 2.5).any(axis=2))
+
+
+def error(picture_path, scene):
+    picture = read(picture_path)
+    a, b = (read(data / "reference" / f"{scene}_{frames[scene]:04}_{k}.exr") for k in (1, 2))
+    keep = usable(a, b)
     mean_square = ((picture - a) * (picture - b))[keep].mean()
     return float(np.sqrt(max(mean_square, 0) / (a * b)[keep].mean()))
 

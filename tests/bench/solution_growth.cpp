@@ -3,6 +3,7 @@
 // figures are exact counts, medians over frames; at the end the exponents that fit them best. Usage:
 // solution_growth [lines a patch] [frames] [certificate] [threads]
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -11,48 +12,11 @@
 #include "solver/radiosity/residual.h"
 #include "solver/scene/load.h"
 #include "solver/visibility/events.h"
-#include "solver/visibility/reach.h"
+#include "tests/bench/room.h"
 #include "tests/bench/timing.h"
 
 namespace afterglow {
 namespace {
-
-struct Room {
-    World world;
-    RayCaster caster;
-    PatchMesh mesh;
-    Lamps lamps;
-    SightLines sight;
-    LightLines light;
-    StaticLines background;
-    std::vector<Rgb> emission, reflectance, external;
-
-    Room(const World& w, float patch_size_m, Index lines)
-        : world(w),
-          caster(world),
-          mesh(meshed(patch_size_m)),
-          lamps(find_lamps(world, mesh)),
-          sight(mesh, world, lines, 1),
-          light(mesh, sight, lamps, std::max(lines / 4, Index{16}), 2),
-          background(make_static_lines(mesh, sight, light)) {
-        for (Index p = 0; p < mesh.size(); ++p) {
-            const Material& material = world.materials[mesh.material(p)];
-            emission.push_back(is_emitter(world, mesh, p) ? pi * material.emission : Rgb(0));
-            reflectance.push_back(material.reflectance * mesh.texture_mean[p]);
-        }
-        external.assign(mesh.size(), Rgb(0));
-    }
-    Room(const Room&) = delete;
-    Room& operator=(const Room&) = delete;
-
-    PatchMesh meshed(float patch_size_m) {
-        Surfaces surfaces = find_surfaces(world);
-        const SideMask reached = reachable_sides(world, surfaces, caster, {}, Context());
-        return make_patches(world, std::move(surfaces), reached, {.patch_size_m = patch_size_m});
-    }
-    [[nodiscard]] LayerScene layers() const { return {mesh, sight, light, lamps, caster, background}; }
-    [[nodiscard]] LineScene lines(int frame) const { return {mesh, sight, light, caster, background, frame}; }
-};
 
 /// What one frame takes; [0] is the number of patches.
 enum Measure { patches, changes, pushes, rounds, pushed_entries, touched_mb, measures };
@@ -67,7 +31,7 @@ constexpr double bytes_per_change = sizeof(RowChange) + 2 * sizeof(Lanes) + 2 * 
 
 Counts count(const World& world, float patch_size_m, Index lines, int frames, double asked,
              const Context& context) {
-    Room room(world, patch_size_m, lines);
+    LitRoom room(world, patch_size_m, lines, std::max(lines / 4, Index{16}));
     extend_static_lines(room.background, room.mesh, room.sight, room.light, room.caster, lines, context);
     const FrameClock clock{24};
     VisibleLines shown = make_visible_lines(room.mesh, room.sight, room.light);

@@ -13,50 +13,11 @@
 #include "solver/radiosity/residual.h"
 #include "solver/scene/load.h"
 #include "solver/visibility/events.h"
-#include "solver/visibility/reach.h"
+#include "tests/bench/room.h"
 #include "tests/bench/timing.h"
 
 namespace afterglow {
 namespace {
-
-struct Room {
-    World world;
-    RayCaster caster;
-    PatchMesh mesh;
-    Lamps lamps;
-    SightLines sight;
-    LightLines light;
-    StaticLines background;
-    std::vector<Rgb> emission, reflectance, external;
-
-    Room(float patch_size_m, Index lines)
-        : world(assemble(load_scene(AFTERGLOW_TEST_DATA "/living-room.glb"))),
-          caster(world),
-          mesh(meshed(patch_size_m)),
-          lamps(find_lamps(world, mesh)),
-          sight(mesh, world, lines, 1),
-          light(mesh, sight, lamps, 64, 2),
-          background(make_static_lines(mesh, sight, light)) {
-        for (Index p = 0; p < mesh.size(); ++p) {
-            const Material& material = world.materials[mesh.material(p)];
-            const bool shines = mesh.side[p] == Side::front || material.shines == Material::Shines::both;
-            emission.push_back(shines ? pi * material.emission : Rgb(0));
-            reflectance.push_back(material.reflectance * mesh.texture_mean[p]);
-        }
-        external.assign(mesh.size(), Rgb(0));
-    }
-    PatchMesh meshed(float patch_size_m) {
-        Surfaces surfaces = find_surfaces(world);
-        const SideMask reached = reachable_sides(world, surfaces, caster, {}, Context());
-        return make_patches(world, std::move(surfaces), reached, {.patch_size_m = patch_size_m});
-    }
-    [[nodiscard]] LayerScene layers() const { return {mesh, sight, light, lamps, caster, background}; }
-    [[nodiscard]] LineScene lines(int frame) const { return {mesh, sight, light, caster, background, frame}; }
-    [[nodiscard]] DirectionRange all() const { return {0, sight.lines_per_patch()}; }
-    [[nodiscard]] RadiosityProblem problem(const FormFactors& factors) const {
-        return {factors.matrix, mesh.area_m2, emission, reflectance, external};
-    }
-};
 
 /// CPU times of the stages of each frame.
 struct Stages {
@@ -80,7 +41,7 @@ void print(const char* name, const Stages& stages) {
                 median(stages.solve), stages.sum());
 }
 
-void compare(Room& room, double asked, int frames, const Context& context) {
+void compare(LitRoom& room, double asked, int frames, const Context& context) {
     const FrameClock clock{24};
     VisibleLines shown = make_visible_lines(room.mesh, room.sight, room.light), anew = shown;
     const auto events = make_events(room.world, clock), retrace = make_retrace();
@@ -134,13 +95,14 @@ void compare(Room& room, double asked, int frames, const Context& context) {
             columns = columns_of(factors.matrix, context);
         }));
         ProgressiveSolution cold;
-        full.solve.push_back(
-            ms_of([&] { cold = solve_progressive(room.problem(factors), columns, progressive, context); }));
+        full.solve.push_back(ms_of(
+            [&] { cold = solve_progressive(room.problem(factors.matrix), columns, progressive, context); }));
         ProgressiveConfig exactly;
         exactly.asked_error = 1e-4;
-        const auto exact = solve_progressive(room.problem(factors), columns, exactly, context);
-        error.push_back(rms(room.problem(factors), state.irradiance, exact.state.irradiance));
-        full_error.push_back(rms(room.problem(factors), cold.state.irradiance, exact.state.irradiance));
+        const auto exact = solve_progressive(room.problem(factors.matrix), columns, exactly, context);
+        error.push_back(rms(room.problem(factors.matrix), state.irradiance, exact.state.irradiance));
+        full_error.push_back(
+            rms(room.problem(factors.matrix), cold.state.irradiance, exact.state.irradiance));
     }
     std::printf("\ncertificate %g %%: medians, ms of CPU time a frame\n", 100 * asked);
     std::printf("%-18s %9s %9s %9s %9s\n", "", "look", "rows", "solve", "sum");
@@ -163,7 +125,8 @@ int main(int count, char** arguments) {
         return count > k ? std::atof(arguments[k]) : otherwise;
     };
     const Context context(static_cast<int>(option(3, 1)));
-    Room room(static_cast<float>(option(1, 0.14)), static_cast<Index>(option(2, 512)));
+    LitRoom room(assemble(load_scene(AFTERGLOW_TEST_DATA "/living-room.glb")),
+                 static_cast<float>(option(1, 0.14)), static_cast<Index>(option(2, 512)), 64);
     const int frames = static_cast<int>(option(4, 25));
     extend_static_lines(room.background, room.mesh, room.sight, room.light, room.caster,
                         room.sight.lines_per_patch(), context);

@@ -16,7 +16,7 @@
 #include "solver/visibility/own_light_lines.h"
 #include "solver/visibility/own_lines.h"
 #include "solver/visibility/packet_hull.h"
-#include "solver/visibility/reach.h"
+#include "tests/bench/room.h"
 #include "tests/bench/timing.h"
 
 namespace afterglow {
@@ -24,33 +24,9 @@ namespace {
 
 constexpr int window = 128;
 
-struct Room {
-    World world;
-    RayCaster caster;
-    PatchMesh mesh;
-    Lamps lamps;
-    SightLines sight;
-    LightLines light;
-    StaticLines background;
-
-    Room(float patch_size_m, Index lines)
-        : world(assemble(load_scene(AFTERGLOW_TEST_DATA "/living-room.glb"))),
-          caster(world),
-          mesh(meshed(patch_size_m)),
-          lamps(find_lamps(world, mesh)),
-          sight(mesh, world, lines, 1),
-          light(mesh, sight, lamps, 64, 2),
-          background(make_static_lines(mesh, sight, light)) {}
-
-    PatchMesh meshed(float patch_size_m) {
-        Surfaces surfaces = find_surfaces(world);
-        const SideMask reached = reachable_sides(world, surfaces, caster, {}, Context());
-        return make_patches(world, std::move(surfaces), reached, {.patch_size_m = patch_size_m});
-    }
-    [[nodiscard]] std::size_t static_lines() const {
-        return std::size_t{mesh.static_size()} * sight.lines_per_patch();
-    }
-};
+std::size_t static_lines(const LinedRoom& room) {
+    return std::size_t{room.mesh.static_size()} * room.sight.lines_per_patch();
+}
 
 struct Row {
     const char* name;
@@ -72,7 +48,7 @@ void print_bytes(std::size_t lines, std::size_t lines_that_change, std::size_t e
 }
 
 /// Which packets of a window any actor's swept box may be met by, alone: the candidates.
-void time_candidates(const Room& room, const FrameClock& clock, int frames, double static_ms) {
+void time_candidates(const LinedRoom& room, const FrameClock& clock, int frames, double static_ms) {
     const int last = std::min(frames, window) - 1;
     std::vector<Box> swept(room.world.bodies.size());
     for (Index b = 1; b < swept.size(); ++b)
@@ -107,7 +83,7 @@ void time_candidates(const Room& room, const FrameClock& clock, int frames, doub
 }
 
 /// Sight lines of static patches only, which is where the strategies differ.
-void compare_static_lines(Room& room, const FrameClock& clock, int frames, const Context& context) {
+void compare_static_lines(LinedRoom& room, const FrameClock& clock, int frames, const Context& context) {
     const Index lines = room.sight.lines_per_patch();
     Row retrace{"retrace"}, events{"events"};
     const double static_ms = ms_of([&] {
@@ -117,7 +93,7 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
     const ActorTrees trees = make_actor_trees(room.world);
     std::uint64_t changes = 0, k = 0, events_applied = 0, different = 0, lines_that_change = 0,
                   all_events = 0;
-    std::vector<char> cut(room.static_lines(), 0);
+    std::vector<char> cut(static_lines(room), 0);
     LineEvents found;
     for (int f = 0; f < frames; ++f) {
         if (f % window == 0) {
@@ -152,7 +128,7 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
             continue;
         }
         retrace.frame_ms.push_back(retrace_ms);
-        for (std::size_t line = 0; line < room.static_lines(); ++line) {
+        for (std::size_t line = 0; line < static_lines(room); ++line) {
             changes += anew[line] != before[line] ? 1U : 0U;
             different += anew[line] != shown[line] ? 1U : 0U;
         }
@@ -163,8 +139,8 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
     lines_that_change = static_cast<std::uint64_t>(std::count(cut.begin(), cut.end(), 1));
     const double per_frame = median(retrace.frame_ms);
     std::printf("static pass %.0f ms; %zu lines of static patches, %.1f %% change at some time\n", static_ms,
-                room.static_lines(),
-                100.0 * static_cast<double>(lines_that_change) / static_cast<double>(room.static_lines()));
+                static_lines(room),
+                100.0 * static_cast<double>(lines_that_change) / static_cast<double>(static_lines(room)));
     std::printf(
         "at %zu sampled frames: %llu changes by retracing, %llu by events; %llu of the lines differ\n",
         retrace.frame_ms.size(), static_cast<unsigned long long>(changes), static_cast<unsigned long long>(k),
@@ -181,12 +157,12 @@ void compare_static_lines(Room& room, const FrameClock& clock, int frames, const
         "a frame touches %.3f k lines where k see another patch; cheaper than retracing from frame %.0f on\n",
         static_cast<double>(k) / static_cast<double>(std::max<std::uint64_t>(changes, 1)),
         std::ceil((static_ms + events.ahead_ms) / (per_frame - median(events.frame_ms))));
-    print_bytes(room.static_lines(), lines_that_change, all_events);
+    print_bytes(static_lines(room), lines_that_change, all_events);
     time_candidates(room, clock, frames, static_ms);
 }
 
 /// What is looked ahead along light lines, a window at a time.
-void time_light_lines(const Room& room, const FrameClock& clock, int frames, const Context& context) {
+void time_light_lines(const LinedRoom& room, const FrameClock& clock, int frames, const Context& context) {
     const ActorTrees trees = make_actor_trees(room.world);
     std::size_t events = 0;
     const double ahead_ms = ms_of([&] {
@@ -204,7 +180,7 @@ void time_light_lines(const Room& room, const FrameClock& clock, int frames, con
 
 /// Actors' own lines, of which some or all differ, and their light lines: all anew, or as OwnLines and
 /// OwnLightLines do it. Medians over sampled frames and exact counts of rays.
-void compare_own_lines(Room& room, const FrameClock& clock, int frames, const Context& context) {
+void compare_own_lines(LinedRoom& room, const FrameClock& clock, int frames, const Context& context) {
     std::printf("\nactors' own lines        rays a frame, anew  frame, ms  kept, rays  frame, ms  ratio\n");
     const auto print = [](const char* name, double anew_rays, const std::vector<double>& anew_ms,
                           double kept_rays, const std::vector<double>& kept_ms) {
@@ -254,7 +230,7 @@ void compare_own_lines(Room& room, const FrameClock& clock, int frames, const Co
 }
 
 /// Everything a frame looks along: actors' own lines and light lines, too.
-void compare_whole_frames(Room& room, const FrameClock& clock, int frames, const Context& context) {
+void compare_whole_frames(LinedRoom& room, const FrameClock& clock, int frames, const Context& context) {
     struct Asked {
         const char* name;
         std::unique_ptr<VisibilityStrategy> strategy;
@@ -298,7 +274,8 @@ int main(int count, char** arguments) {
     };
     const FrameClock clock{option(1, 24)};
     const Context context(static_cast<int>(option(4, 0)));
-    Room room(static_cast<float>(option(2, 0.14)), static_cast<Index>(option(3, 512)));
+    LinedRoom room(assemble(load_scene(AFTERGLOW_TEST_DATA "/living-room.glb")),
+                   static_cast<float>(option(2, 0.14)), static_cast<Index>(option(3, 512)), 64);
     const double all = room.world.duration_s * clock.frames_per_second;
     const int frames = static_cast<int>(option(5, all));
     std::printf("living-room, %d frames, %u patches x %u lines, %d threads\n", frames, room.mesh.size(),
