@@ -21,6 +21,8 @@ FOREIGN = {
     r"xxhash\.h": ["one of solver/base/"],
     r"httplib\.h": ["service/http/", "one of client/", "tests/"],
     r"CLI/": ["service/", "client/"],
+    r"zip\.h": ["service/base/zip_archive.cpp", "tests/"],
+    r"openssl/": ["one of client/"],
     r"sqlite3\.h|SQLiteCpp/": ["one of service/"],
 }
 

@@ -1,4 +1,5 @@
 #include <csignal>
+#include <fstream>
 #include <random>
 #include <set>
 #include <thread>
@@ -21,14 +22,6 @@ class Durability : public ServiceTest {
         const auto reply = client::Json::parse(http_->get("/v1/jobs").body);
         for (const auto& job : reply.at("jobs")) ids.insert(job.at("id").get<std::string>());
         return ids;
-    }
-    std::map<int, std::string> finished(const std::string& id) {
-        std::map<int, std::string> pictures;
-        const auto reply = client::Json::parse(http_->get("/v1/jobs/" + id + "/frames").body);
-        for (const auto& frame : reply.at("frames"))
-            if (frame.at("final") == true)
-                pictures[frame.at("frame")] = http_->get(frame.at("exr").get<std::string>()).body;
-        return pictures;
     }
 };
 
@@ -71,15 +64,19 @@ TEST_F(Durability, FinishedFramesAreNeitherTornNorComputedAgain) {
 TEST_F(Durability, AFullDiskIsAClearErrorAndHarmsNothing) {
     const std::string data = (folder_.path() / "small").string();
     // A limit on the size of files stands for a disk that is full.
-    Process server({"/usr/bin/prlimit", "--fsize=50000", AFTERGLOW_BIN_DIR "/afterglowd", "serve", "--listen",
+    Process server({"/usr/bin/prlimit", "--fsize=90000", AFTERGLOW_BIN_DIR "/afterglowd", "serve", "--listen",
                     "127.0.0.1:0", "--data", data});
     const auto is_ready = [](const std::string& out) { return out.find('\n') != std::string::npos; };
     ASSERT_TRUE(server.wait_for_output(is_ready)) << server.err();
     const std::string out = server.out();
     const auto at = out.find("http://");
     const std::string url = out.substr(at, out.find('\n') - at);
-    ASSERT_GT(std::filesystem::file_size(data_file("living-room.glb")), 50'000U);
-    Process submit({AFTERGLOW_BIN_DIR "/afterglow", "submit", data_file("living-room.glb"), "--server", url});
+    const auto scene = folder_.path() / "scene.json";
+    std::ofstream(scene)
+        << R"({"afterglow":1,"materials":[{"name":"lamp","emission":1}],"nodes":[{"name":"panel",
+        "geometry":{"quad":{"size":[1,1]},"material":"lamp"}}]})"
+        << std::string(200'000, ' ');
+    Process submit({AFTERGLOW_BIN_DIR "/afterglow", "submit", scene.string(), "--server", url});
     EXPECT_NE(submit.wait(), 0);
     EXPECT_THAT(submit.err(), testing::HasSubstr("disk is full"));
     client::HttpConnection http(url, interrupt_);

@@ -4,6 +4,8 @@
 #include <cerrno>
 #include <csignal>
 #include <fcntl.h>
+#include <filesystem>
+#include <fstream>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <system_error>
@@ -100,6 +102,18 @@ void Process::send_signal(int number) const {
     if (!status_) ::kill(pid_, number);
 }
 
+std::vector<pid_t> Process::children() const {
+    std::vector<pid_t> pids;
+    std::error_code error;
+    const std::filesystem::directory_iterator tasks("/proc/" + std::to_string(pid_) + "/task", error);
+    for (const auto& task : tasks) {
+        std::ifstream in(task.path() / "children");
+        for (pid_t pid = 0; in >> pid;)
+            if (is_running(pid)) pids.push_back(pid);
+    }
+    return pids;
+}
+
 void Process::reap(int status) {
     status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     for (std::thread& reader : readers_) reader.join();
@@ -125,6 +139,14 @@ bool Process::wait_for_output(const std::function<bool(const std::string&)>& con
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, limit, [&] { return open_outputs_ == 0 || condition(out_); });
     return condition(out_);
+}
+
+bool is_running(pid_t pid) {
+    std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
+    std::string stat;
+    std::getline(in, stat);
+    const auto name_end = stat.rfind(')');
+    return name_end != std::string::npos && stat.substr(name_end + 2, 1) != "Z";
 }
 
 std::string Process::out() const {

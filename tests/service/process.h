@@ -29,6 +29,9 @@ class Process {
     Process& operator=(const Process&) = delete;
 
     void send_signal(int number) const;
+    [[nodiscard]] pid_t pid() const { return pid_; }
+    /// Processes that it has started and that still run.
+    [[nodiscard]] std::vector<pid_t> children() const;
     /// Exit status, or 128 + number where a signal ended it; nothing where it still runs after the limit.
     std::optional<int> wait(std::chrono::milliseconds limit = patience);
     /// Waits until what was written to standard output fulfils the condition. False where the program ended,
@@ -53,5 +56,8 @@ class Process {
     int open_outputs_ = 2;
     std::vector<std::thread> readers_;
 };
+
+/// Whether a process runs; one that has ended and is waited for by nobody does not.
+bool is_running(pid_t pid);
 
 }  // namespace afterglow::test

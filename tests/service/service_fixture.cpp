@@ -1,5 +1,7 @@
 #include "tests/service/service_fixture.h"
 
+#include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <stdlib.h>
@@ -77,6 +79,24 @@ std::string ServiceTest::submit(const std::string& scene, const std::vector<std:
     return client::Json::parse(outcome.out).at("id").get<std::string>();
 }
 
+std::string ServiceTest::upload(const std::string& scene) {
+    std::ifstream in(data_file(scene), std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    return client::Json::parse(http_->post("/v1/scenes", bytes, "model/gltf-binary").body).at("id");
+}
+
+std::string ServiceTest::submit_quickly(const std::string& scene, const std::string& settings) {
+    return submit_quickly(scene, settings, *http_);
+}
+
+std::string ServiceTest::submit_quickly(const std::string& scene, const std::string& settings,
+                                        client::HttpConnection& http) {
+    const std::string body = R"({"scene":")" + scene + R"(","settings":)" + settings + "}";
+    const auto reply = http.post("/v1/jobs", body, "application/json");
+    if (reply.status != 201) throw std::runtime_error(reply.body);
+    return client::Json::parse(reply.body).at("id");
+}
+
 client::Json ServiceTest::job(const std::string& id) {
     const Outcome outcome = afterglow({"show", id, "--json"});
     EXPECT_EQ(outcome.exit, 0) << outcome.err;
@@ -96,6 +116,15 @@ std::vector<client::Json> ServiceTest::all_events(const std::string& id) {
     const auto reply = http_->stream("/v1/jobs/" + id + "/events", {{"Last-Event-ID", "0"}}, sink);
     EXPECT_EQ(reply.status, 200) << reply.body;
     return events;
+}
+
+std::map<int, std::string> ServiceTest::finished(const std::string& id) {
+    std::map<int, std::string> pictures;
+    const auto reply = client::Json::parse(http_->get("/v1/jobs/" + id + "/frames").body);
+    for (const auto& frame : reply.at("frames"))
+        if (frame.at("final") == true)
+            pictures[frame.at("frame")] = http_->get(frame.at("exr").get<std::string>()).body;
+    return pictures;
 }
 
 std::vector<std::string> ServiceTest::small(const std::string& frames) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,11 +47,20 @@ class ServiceTest : public testing::Test {
     std::unique_ptr<Process> start_afterglow(const std::vector<std::string>& arguments);
     /// Submits a scene of tests/data with further options and returns the job's id.
     std::string submit(const std::string& scene, const std::vector<std::string>& options);
+    /// Uploads a scene of tests/data without the client program and returns its id; submits a job for one.
+    /// Errors: std::exception where the server is gone or refuses.
+    std::string upload(const std::string& scene);
+    std::string submit_quickly(const std::string& scene, const std::string& settings);
+    static std::string submit_quickly(const std::string& scene, const std::string& settings,
+                                      client::HttpConnection& http);
     /// The job as the service shows it.
     client::Json job(const std::string& id);
     /// All events of an ended job from the first on, each {"event","id","data"} as `watch --json` writes
     /// them.
     std::vector<client::Json> all_events(const std::string& id);
+
+    /// The final pictures of a job so far, as OpenEXR, by frame.
+    std::map<int, std::string> finished(const std::string& id);
 
     /// Options of a job that is small, and of one that outlives any test.
     static std::vector<std::string> small(const std::string& frames);

@@ -8,6 +8,7 @@
 
 #include "solver/sequence/parts.h"
 #include "tests/support/worlds.h"
+#include "tests/unit/sequence/quick_sequences.h"
 
 namespace afterglow {
 namespace {
@@ -24,13 +25,6 @@ SequenceConfig following() {
     config.height = 32;
     config.revisions = Revisions::final_only;
     return config;
-}
-
-Picture picture_of(SequenceState& state, int frame) {
-    Picture last;
-    step(
-        state, frame, [&](const Revision& r) { last = r.radiance; }, Context(2));
-    return last;
 }
 
 const std::vector<Rgb>& light_of(SequenceState& state) {
@@ -88,7 +82,7 @@ TEST(Flicker, IsNoneWhileAllActorsRest) {
         bool moved = false;
         Picture before;
         for (int frame = 0; frame <= 22; ++frame) {
-            Picture picture = picture_of(state, frame);
+            Picture picture = testing::picture_of(state, frame);
             if (frame == 10) light = light_of(state);
             if (frame >= 10 && frame <= 19) {
                 EXPECT_TRUE(same_bits(light_of(state), light)) << frame;
@@ -140,7 +134,7 @@ TEST(Flicker, IsNoneInASealedRoomBesideOneInWhichActorsMove) {
         std::vector<Rgb> sealed, moving;
         bool moved = false;
         for (const int frame : frames) {
-            pictures.push_back(picture_of(state, frame));
+            pictures.push_back(testing::picture_of(state, frame));
             std::vector<Rgb> here, there;
             const SequenceState::Parts& parts = state.parts();
             for (Index p = 0; p < parts.mesh.static_size(); ++p)

@@ -31,6 +31,15 @@ struct LinedWorld {
     }
 };
 
+/// Radiosity of what its lamps emit, W/m², by patch.
+inline std::vector<Rgb> emission_of(const LinedWorld& lined) {
+    std::vector<Rgb> emission(lined.mesh.size(), Rgb(0));
+    for (Index p = 0; p < lined.mesh.size(); ++p)
+        if (is_emitter(lined.world, lined.mesh, p))
+            emission[p] = pi * lined.world.materials[lined.mesh.material(p)].emission;
+    return emission;
+}
+
 /// What its static lines see without actors.
 inline StaticLines background_of(const LinedWorld& lined) {
     StaticLines lines = make_static_lines(lined.mesh, lined.sight, lined.light);

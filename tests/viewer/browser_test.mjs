@@ -127,7 +127,11 @@ test("finished frames play", async () => {
   assert.equal(await page.getAttribute("#play", "aria-pressed"), "false");
 });
 
-test("a click on the error's curve goes to the frame of the nearest point", async () => {
+test("a click on the error's curve goes to the frame of the nearest point, also where nobody watched", async () => {
+  await page.reload();
+  await until_connection_says("ended");
+  await until(() => document.querySelector("#strip").getAttribute("aria-valuemax") === "5");
+  await page.waitForTimeout(500);
   await page.focus("#strip");
   await page.keyboard.press("Home");
   const plot = await page.locator("#chart .u-over").boundingBox();
@@ -153,9 +157,63 @@ test("a page finds its way back when the service has crashed and started again",
   assert.match(await page.getAttribute("#strip", "aria-valuetext"), /^frame 48, converged/);
 });
 
-test("what the service refuses is said in words", async () => {
+test("a lamp is dimmed and an object moved with the keyboard, and the pictures follow", async () => {
+  await page.goto(address);
+  await submit("0-3");
+  await until(() => document.querySelector("#strip").getAttribute("aria-valuemax") === "3");
+  await until_connection_says("ended");
+  await page.focus("#strip");
+  await page.keyboard.press("Home");
+  await until(() => document.querySelector("#strip").getAttribute("aria-valuetext").startsWith("frame 0, converged"));
+  const bright = await bright_pixels(120);
+  assert.ok(bright > 300);
+
+  await until(() => document.querySelector("#edit [name=lamp]").value === "lamp");
+  await page.focus("#edit [name=dim]");
+  await page.keyboard.press("Home");
+  for (let k = 0; k < 4; ++k) await page.keyboard.press("ArrowRight");
+  await until(() => document.querySelector("#dimmed").value.startsWith("20 %"));
+  await until(() => /[1-9] edits?; the newest kept/.test(document.querySelector("#edit [name=said]").value));
+  await until_connection_says("ended");
+  await until(() => document.querySelector("#strip").getAttribute("aria-valuetext").startsWith("frame 0, converged"));
+  await page.waitForTimeout(500);
+  assert.ok((await bright_pixels(120)) < bright / 2, "it is darker");
+  await shot("dimmed");
+
+  // A longer job is edited while it runs, so that stale frames can be seen.
+  await submit("0-48", "preview");
+  await until(() => document.querySelector("#strip").getAttribute("aria-valuemax") === "48");
+  await until(() => document.querySelector("#edit [name=object]").value === "floor");
+  await page.focus("#strip");
+  await page.keyboard.press("Home");
+  for (let k = 0; k < 3; ++k) await page.keyboard.press("ArrowRight");
+  await until(() => document.querySelector("#strip").getAttribute("aria-valuetext").startsWith("frame 3, converged"));
+  await page.selectOption("#edit [name=object]", "tall_block");
+  await page.fill("#edit [name=x]", "-0.1");
+  await page.keyboard.press("Enter");
+  await until(() => document.querySelector("#strip").getAttribute("aria-valuetext") === "frame 3, stale");
+  await shot("edit");
+  await until(() => /1 edit; the newest kept \d+ %/.test(document.querySelector("#edit [name=said]").value));
+  await shot("edited");
+  await until(() => document.querySelector("#strip").getAttribute("aria-valuetext").startsWith("frame 3, converged"));
+  await page.click("#controls button:last-child");
+  await until(() => document.querySelector("#edit [name=edits]").disabled);
+});
+
+test("what the service refuses is said in words, in sight", async () => {
   await submit("7-3");
   await page.waitForSelector("#message:not([hidden])");
   assert.match(await text("#message"), /frames/);
+  const { y, height } = await page.locator("#message").boundingBox();
+  assert.ok(y >= 0 && y + height <= 1100);
   await shot("refused");
+});
+
+test("nothing is cut off on a narrow screen", async () => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.reload();
+  await until(() => document.querySelector("#strip").getAttribute("aria-valuemax") === "48");
+  assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 390);
+  await page.waitForTimeout(500);
+  if (screenshots) await page.screenshot({ path: join(screenshots, "narrow.png"), fullPage: true });
 });

@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { columns } from "../../service/viewer/chart.js";
+import { dim_of, lamps_of, move_of, said_of } from "../../service/viewer/edit_panel.js";
 import { settings_of } from "../../service/viewer/job_list.js";
 import { facts_of } from "../../service/viewer/job_panel.js";
 import { next_final } from "../../service/viewer/player.js";
@@ -28,6 +29,20 @@ test("a form left as it is asks for all frames", () => {
   assert.deepEqual(settings_of(form), { quality: "draft", method: "auto", width: 640, height: 360 });
   form.set("frames", "0-4");
   assert.equal(settings_of(form).frames, "0-4");
+});
+
+test("edits are sent as the interface has them, and none that change nothing", () => {
+  assert.deepEqual(move_of("chair", [0.1, 0, -2]), { move: { node: "chair", translation: [0.1, 0, -2] } });
+  assert.equal(move_of("chair", [0, 0, 0]), null);
+  assert.deepEqual(dim_of("lamp", 35), { light: { material: "lamp", emission_scale: 0.35 } });
+  const materials = [{ material: "wall", emission_scale: null }, { material: "lamp", emission_scale: 0 }];
+  assert.deepEqual(lamps_of({ materials }).map((m) => m.material), ["lamp"], "one that is off is still a lamp");
+});
+
+test("what an edit kept is said once it is known", () => {
+  assert.equal(said_of({ revision: 0, reused: null }), "");
+  assert.equal(said_of({ revision: 1, reused: null }), "1 edit; the newest is being taken over");
+  assert.equal(said_of({ revision: 2, reused: 0.873 }), "2 edits; the newest kept 87 % of all lines");
 });
 
 test("a failed job says why", () => {

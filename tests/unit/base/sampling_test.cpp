@@ -38,6 +38,21 @@ TEST(Sobol, SeedsGiveDifferentPoints) {
     EXPECT_EQ(points.at(1, 1), points.at(1, 1));
 }
 
+TEST(Sobol, SixteenAtOnceAreThoseOneByOne) {
+    const SobolPoints points(64);
+    std::array<std::uint32_t, 16> index{}, seed{};
+    for (std::size_t d = 0; d < 4; ++d) {
+        for (std::uint32_t lane = 0; lane < 16; ++lane) {
+            index[lane] = (lane * 7) % 64;
+            seed[lane] = SobolPoints::seed_of(lane / 3, d);
+        }
+        std::array<float, 16> out{};
+        points.at(d, index, seed, out);
+        for (std::uint32_t lane = 0; lane < 16; ++lane)
+            EXPECT_EQ(out[lane], points.at(index[lane], lane / 3)[d]) << lane;
+    }
+}
+
 TEST(CosineDirection, IsUnitAboveTheHorizonWithMeanCosineTwoThirds) {
     const SobolPoints points(4096);
     double mean = 0;

@@ -40,6 +40,12 @@ TEST(Completion, OffersTheOptionsOfTheCommandInHand) {
     EXPECT_THAT(offered("afterglow rm j1 --d"), ElementsAre("--dry-run"));
 }
 
+TEST(Completion, OffersKindsOfEditsFirstAndThenTheirOptions) {
+    EXPECT_THAT(offered("afterglow edit li"), ElementsAre("light"));
+    EXPECT_THAT(offered("afterglow edit light j1 lamp --sc"), ElementsAre("--scale"));
+    EXPECT_THAT(offered("afterglow edit move j1 chair cha"), IsEmpty());
+}
+
 TEST(Completion, LeavesFileNamesToTheShell) {
     EXPECT_THAT(offered("afterglow submit roo"), IsEmpty());
 }

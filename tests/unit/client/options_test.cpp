@@ -78,6 +78,10 @@ TEST(Options, ReadsTheOtherCommands) {
         EXPECT_EQ(command.id, "j1");
         EXPECT_EQ(command.step, step);
     }
+    EXPECT_EQ(std::get<PriorityCommand>(parse({"priority", "j1", "7"}).command).priority, 7);
+    EXPECT_EQ(std::get<PriorityCommand>(parse({"priority", "j1", "-10"}).command).priority, -10);
+    for (const char* bad : {"11", "-11", "1.5", "high"})
+        EXPECT_THROW(parse({"priority", "j1", bad}), ClientError) << bad;
     EXPECT_EQ(std::get<RemoveCommand>(parse({"rm", "j1"}).command).removal, Removal::done);
     EXPECT_EQ(std::get<RemoveCommand>(parse({"rm", "j1", "--dry-run"}).command).removal, Removal::tried);
     EXPECT_TRUE(std::holds_alternative<DoctorCommand>(parse({"doctor"}).command));
@@ -126,7 +130,8 @@ TEST(Options, ShowsHelpWithTheExitCodes) {
 
 TEST(Options, RefusesWhatItDoesNotKnow) {
     EXPECT_THAT(complaint({}), HasSubstr("subcommand"));
-    EXPECT_THAT(complaint({"fly"}), HasSubstr("subcommand"));
+    EXPECT_THAT(complaint({"fly"}), HasSubstr("there is no command \"fly\" (see --help)"));
+    EXPECT_THAT(complaint({"--fly"}), HasSubstr("subcommand"));
     EXPECT_THAT(complaint({"submit"}), HasSubstr("SCENE"));
     EXPECT_THAT(complaint({"submit", "a.glb", "--frame", "1"}), HasSubstr("--frame"));
     EXPECT_THAT(complaint({"submit", "a.glb", "--rays", "many"}), HasSubstr("--rays"));

@@ -35,6 +35,18 @@ TEST(Text, SpeaksDurations) {
     EXPECT_EQ(spoken(duration<double>(1e300)), spoken(duration<double>(3.2e9)));
 }
 
+TEST(Text, SpeaksBytes) {
+    EXPECT_EQ(spoken_bytes(0), "0 bytes");
+    EXPECT_EQ(spoken_bytes(7), "7 bytes");
+    EXPECT_EQ(spoken_bytes(999), "999 bytes");
+    EXPECT_EQ(spoken_bytes(1000), "1.0 kB");
+    EXPECT_EQ(spoken_bytes(8568), "8.6 kB");
+    EXPECT_EQ(spoken_bytes(9999), "10 kB");
+    EXPECT_EQ(spoken_bytes(999'999), "1.0 MB");
+    EXPECT_EQ(spoken_bytes(41.2e6), "41 MB");
+    EXPECT_EQ(spoken_bytes(1.24e9), "1.2 GB");
+}
+
 TEST(Text, WritesPercentagesWithTwoDigits) {
     EXPECT_EQ(percent(0), "0 %");
     EXPECT_EQ(percent(0.0123), "1.2 %");

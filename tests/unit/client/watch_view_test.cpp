@@ -46,6 +46,26 @@ TEST(WatchView, TakesFinishedFramesFromASnapshot) {
     EXPECT_EQ(view.image->revision, 2);
 }
 
+TEST(WatchView, AnEditLetsFramesFinishAgain) {
+    WatchView view;
+    const auto apply = [&](const char* name, const char* data) {
+        return apply_event(view, {name, "1", data}, "job");
+    };
+    apply("job", running);
+    for (const char* image :
+         {R"({"frame":0,"revision":4,"final":true})", R"({"frame":1,"revision":4,"final":true})"})
+        EXPECT_EQ(apply("image", image).kind, Kind::final_image);
+    const WatchNews edited = apply("edit", R"({"revision":1,"first_frame":1,"reused":null,"edits":[]})");
+    EXPECT_EQ(edited.kind, Kind::edit);
+    EXPECT_EQ(edited.told, "edited: frames from 1 on are computed again");
+    EXPECT_THAT(view.finished, ElementsAre(0));
+    EXPECT_EQ(apply("reused", R"({"revision":1,"reused":0.5})").told, "the edit kept 50 % of all lines");
+    EXPECT_EQ(apply("image", R"({"frame":1,"revision":5,"final":true,"stale":true})").kind, Kind::nothing);
+    EXPECT_EQ(apply("image", R"({"frame":1,"revision":1004,"final":true,"stale":false})").kind,
+              Kind::final_image);
+    EXPECT_THAT(view.finished, ElementsAre(0, 1));
+}
+
 TEST(WatchView, ARepeatedPictureOrStateIsNoNews) {
     WatchView view;
     const ServerEvent job{"job", "2", running};
@@ -88,7 +108,7 @@ TEST(WatchView, RemembersWhyAJobFailed) {
 
 TEST(WatchView, PassesOverEventsOfANewerServer) {
     WatchView view;
-    EXPECT_EQ(apply_event(view, {"edit", "1", "{}"}, "job").kind, Kind::nothing);
+    EXPECT_EQ(apply_event(view, {"brightness", "1", "{}"}, "job").kind, Kind::nothing);
     EXPECT_EQ(apply_event(view, {"progress", "1", "[1]"}, "job").kind, Kind::progress);
 }
 

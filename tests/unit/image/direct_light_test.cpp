@@ -12,6 +12,7 @@ namespace afterglow {
 namespace {
 
 using testing::add_quad;
+using testing::emission_of;
 using testing::LinedWorld;
 
 /// A lamp panel of radiance 1 over a floor so large that the panel counts as a lamp.
@@ -21,14 +22,6 @@ World lamp_world() {
     add_quad(body, Vec3(-0.5F, 2, -0.25F), Vec3(1, 0, 0), Vec3(0, 0, 0.5F), 1);
     add_quad(body, Vec3(-20, 0, -20), Vec3(0, 0, 40), Vec3(40, 0, 0), 0);
     return world;
-}
-
-std::vector<Rgb> emission_of(const LinedWorld& lined) {
-    std::vector<Rgb> emission(lined.mesh.size(), Rgb(0));
-    for (Index p = 0; p < lined.mesh.size(); ++p)
-        if (is_emitter(lined.world, lined.mesh, p))
-            emission[p] = pi * lined.world.materials[lined.mesh.material(p)].emission;
-    return emission;
 }
 
 float mean_irradiance(const DirectLight& direct, const Vec3& point, const Vec3& normal,

@@ -148,6 +148,7 @@ TEST(KeptPicture, WhereNothingChangesNothingIsDone) {
     const PictureUpdate update = stage.update(state, quick());
     EXPECT_FALSE(update.anew);
     EXPECT_EQ(update.samples, 0U);
+    EXPECT_EQ(update.pixels, 0U);
     EXPECT_EQ(update.rays_traced, 0U);
     EXPECT_TRUE(same_bits(state.picture, before));
 }
@@ -223,14 +224,14 @@ TEST(KeptPicture, LightFollowsItsToleranceAndErrorsDoNotCreep) {
     config.tolerance = 0.01F;
     KeptPictureState state;
     stage.update(state, config);
-    std::uint64_t looked_at = 0;
+    std::uint64_t lit = 0;
     int untouched = 0;
     for (int k = 0; k < 30; ++k) {
         // Each step alone is within the tolerance; the mean is above 1.
         for (Rgb& value : stage.irradiance) value += 0.003F;
         const PictureUpdate update = stage.update(state, config);
-        looked_at += update.samples;
-        untouched += update.samples == 0 ? 1 : 0;
+        lit += update.pixels;
+        untouched += update.pixels == 0 ? 1 : 0;
         float mean = 0;
         for (const Rgb& value : stage.irradiance) mean = std::max(mean, max_channel(value));
         for (std::size_t p = 0; p < stage.irradiance.size(); ++p)
@@ -241,7 +242,7 @@ TEST(KeptPicture, LightFollowsItsToleranceAndErrorsDoNotCreep) {
         EXPECT_TRUE(same_bits(state.picture, stage.fresh(config.picture)));
         std::swap(stage.irradiance, state.irradiance);
     }
-    EXPECT_GT(looked_at, 0U);
+    EXPECT_GT(lit, 0U);
     EXPECT_GT(untouched, 10);
 }
 

@@ -65,6 +65,39 @@ struct LitLayers {
     }
 };
 
+/// A white room nearly filled by a box that moves within it.
+World filled_room() {
+    World world = testing::small_room();
+    for (Material& material : world.materials) material.reflectance = Rgb(0.9F);
+    world.bodies.resize(1);
+    Body box;
+    box.name = "filling";
+    testing::add_box(box, Vec3(0.3F, 0.2F, 0.3F), Vec3(3.4F, 2.2F, 3.6F), 0);
+    box.path.keys = {{0, {Vec3(0), Quat(1, 0, 0, 0)}}, {1, {Vec3(0.2F, 0.1F, 0.5F), Quat(1, 0, 0, 0)}}};
+    world.bodies.push_back(std::move(box));
+    return world;
+}
+
+TEST(Residual, FindsTheLightFromAnywhereWhereActorsCoverMostLines) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(0, 1);
+    LitLayers light(filled_room());
+    for (const double time : {0.0, 0.6, 1.0}) {
+        light.world.show_at(time);
+        std::vector<std::optional<Lanes>> known(light.emission.size());
+        for (auto& patch : known) patch = to_lanes(Rgb(3 * unit(random), 3 * unit(random), 3 * unit(random)));
+        light.state = make_residual_state(light.problem(), known, Context(2));
+        // From here on a change is small enough for columns alone.
+        ResidualConfig config;
+        config.asked_error = 1e-3;
+        config.sweep_share = 2;
+        light.certificate = step(light.state, light.problem(), config, Context(2));
+        EXPECT_EQ(light.state.status, ResidualStatus::converged)
+            << light.certificate.error_bound << " after " << light.state.pushes;
+        EXPECT_LE(light.actual_error(), light.certificate.error_bound * 1.001 + 2e-5);
+    }
+}
+
 TEST(Residual, KeepsItsPromiseAtEveryTimeInAnyOrder) {
     for (const unsigned seed : {1U, 2U, 3U, 4U}) {
         LitLayers light(testing::random_world(seed, 4, Movements::turning));

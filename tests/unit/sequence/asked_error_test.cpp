@@ -8,6 +8,8 @@
 namespace afterglow {
 namespace {
 
+constexpr double measured_pixels = 256 * 256;
+
 SequenceConfig asking(double error) {
     SequenceConfig config;
     config.asked_error = error;
@@ -15,9 +17,9 @@ SequenceConfig asking(double error) {
 }
 
 TEST(AskedError, SmallerErrorsNeverTakeLess) {
-    QualityLevel coarser = level_for_error(0.9);
+    QualityLevel coarser = level_for_error(0.9, measured_pixels);
     for (double error = 0.2; error > 0.001; error *= 0.97) {
-        const QualityLevel level = level_for_error(error);
+        const QualityLevel level = level_for_error(error, measured_pixels);
         EXPECT_GE(level.cells, coarser.cells) << error;
         EXPECT_LE(level.finest_share, coarser.finest_share) << error;
         EXPECT_GE(level.rays_per_patch, coarser.rays_per_patch) << error;
@@ -30,8 +32,23 @@ TEST(AskedError, SmallerErrorsNeverTakeLess) {
     }
 }
 
+TEST(AskedError, SmallerPicturesGetMoreSamplesWhereTheyHaveEdges) {
+    for (const double error : {0.05, 0.02, 0.01}) {
+        const QualityLevel measured = level_for_error(error, measured_pixels);
+        const QualityLevel quarter = level_for_error(error, measured_pixels / 4);
+        EXPECT_NEAR(quarter.picture.most_samples_per_pixel, 2 * measured.picture.most_samples_per_pixel, 1);
+        EXPECT_EQ(quarter.picture.samples_per_pixel, measured.picture.samples_per_pixel);
+        EXPECT_EQ(quarter.cells, measured.cells);
+        EXPECT_EQ(level_for_error(error, 1).picture.most_samples_per_pixel,
+                  level_for_error(error, measured_pixels / 16).picture.most_samples_per_pixel);
+        EXPECT_EQ(level_for_error(error, 4e6).picture.most_samples_per_pixel,
+                  measured.picture.most_samples_per_pixel);
+    }
+}
+
 TEST(AskedError, StaysWithinBounds) {
-    const QualityLevel tiny = level_for_error(1e-9), huge = level_for_error(0.999);
+    const QualityLevel tiny = level_for_error(1e-9, measured_pixels),
+                       huge = level_for_error(0.999, measured_pixels);
     EXPECT_LE(tiny.cells, 200'000);
     EXPECT_LE(tiny.rays_per_patch, 4096);
     EXPECT_LE(tiny.picture.most_samples_per_pixel, 1024);
@@ -45,7 +62,7 @@ TEST(AskedError, TakesTheQualitysPlace) {
     config.quality = Quality::final;
     config.seed = 7;
     const QualityLevel level = level_of(config);
-    EXPECT_EQ(level.cells, level_for_error(0.1).cells);
+    EXPECT_EQ(level.cells, level_for_error(0.1, measured_pixels).cells);
     EXPECT_EQ(level.certificate, 0.1);
     EXPECT_EQ(level.picture.seed, 7U);
     EXPECT_EQ(level.probes.seed, 7U);

@@ -6,6 +6,7 @@
 
 #include "solver/base/error.h"
 #include "tests/support/worlds.h"
+#include "tests/unit/sequence/quick_sequences.h"
 
 namespace afterglow {
 namespace {
@@ -33,13 +34,6 @@ SequenceConfig fine() {
     return config;
 }
 
-Picture picture_of(SequenceState& state, int frame) {
-    Picture last;
-    step(
-        state, frame, [&](const Revision& r) { last = r.radiance; }, Context(2));
-    return last;
-}
-
 /// Largest difference relative to the mean.
 double difference(const Picture& a, const Picture& b) {
     double largest = 0, sum = 0;
@@ -56,7 +50,8 @@ void expect_as_new(SequenceState& edited, World scene, int frame) {
     // A job that was meshed for light in more places has other blocks of patches, whose lines go other ways.
     const bool same_patches = edited.statistics().patches == fresh.statistics().patches;
     EXPECT_GE(edited.statistics().patches, fresh.statistics().patches);
-    EXPECT_LE(difference(picture_of(edited, frame), picture_of(fresh, frame)), same_patches ? 4e-3 : 4e-2)
+    EXPECT_LE(difference(testing::picture_of(edited, frame), testing::picture_of(fresh, frame)),
+              same_patches ? 4e-3 : 4e-2)
         << "frame " << frame;
 }
 
@@ -65,10 +60,26 @@ struct Edited {
     SequenceState state = make_state(scene, fine(), Context(2));
 
     Edited() {
-        for (const int frame : {0, 1, 2}) picture_of(state, frame);
+        for (const int frame : {0, 1, 2}) testing::picture_of(state, frame);
     }
     void expect_as_new(int frame) { afterglow::expect_as_new(state, scene, frame); }
 };
+
+TEST(Edits, TheNextFrameShowsAPictureBeforeItsFinalOne) {
+    Edited job;
+    const auto pictures = [&](int frame) {
+        int count = 0;
+        step(
+            job.state, frame, [&](const Revision&) { ++count; }, Context(2));
+        return count;
+    };
+    EXPECT_EQ(pictures(3), 1) << "what follows is quick";
+    set_emission(job.state, job.scene.materials[1].name, Rgb(0.5F), Context(2));
+    EXPECT_EQ(pictures(4), 2);
+    EXPECT_EQ(pictures(5), 1);
+    set_emission(job.state, "box", Rgb(3, 2, 1), Context(2));
+    EXPECT_GE(pictures(4), 3) << "light that begins anew comes coarse first";
+}
 
 TEST(Edits, AReflectanceChangesWithoutTracingALine) {
     Edited job;
@@ -89,7 +100,8 @@ TEST(Edits, ALampIsDimmedPutOutAndLitAgain) {
             set_emission(job.state, job.scene.materials[1].name, Rgb(emission), Context(2));
         EXPECT_EQ(outcome.lines_reused, 1);
         if (emission == 0) {
-            for (const Rgb& pixel : picture_of(job.state, 3).pixels) ASSERT_LE(max_channel(pixel), 1e-6F);
+            for (const Rgb& pixel : testing::picture_of(job.state, 3).pixels)
+                ASSERT_LE(max_channel(pixel), 1e-6F);
             continue;
         }
         job.scene.materials[1].emission = Rgb(emission);
@@ -172,7 +184,7 @@ TEST(Edits, AnyOrderOfThemEndsWhereANewJobStarts) {
         if (round % 3 == 2)
             job.expect_as_new(frame);
         else
-            picture_of(job.state, frame);
+            testing::picture_of(job.state, frame);
     }
 }
 

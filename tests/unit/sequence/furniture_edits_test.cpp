@@ -38,13 +38,6 @@ SequenceConfig fine() {
     return config;
 }
 
-Picture picture_of(SequenceState& state, int frame) {
-    Picture last;
-    step(
-        state, frame, [&](const Revision& r) { last = r.radiance; }, Context(2));
-    return last;
-}
-
 /// Root mean square difference relative to the mean.
 double difference(const Picture& a, const Picture& b) {
     double squares = 0, sum = 0;
@@ -89,14 +82,14 @@ struct Edited {
     World scene = furnished_room();
     SequenceState state = make_state(scene, fine(), Context(2));
 
-    Edited() { picture_of(state, 0); }
+    Edited() { testing::picture_of(state, 0); }
 
     void expect_as_new(int frame) {
         SequenceState fresh = make_state(scene, fine(), Context(2));
         EXPECT_EQ(state.statistics().patches, fresh.statistics().patches);
         EXPECT_EQ(state.statistics().actor_patches, fresh.statistics().actor_patches);
         // Other directions of 64 lines to patches of 0.4 m: their noise is what is left.
-        EXPECT_LE(difference(picture_of(state, frame), picture_of(fresh, frame)), noise())
+        EXPECT_LE(difference(testing::picture_of(state, frame), testing::picture_of(fresh, frame)), noise())
             << "frame " << frame;
     }
     /// How far two jobs on one scene are apart whose lines go other ways, and half as much again.
@@ -104,7 +97,7 @@ struct Edited {
         SequenceConfig other = fine();
         other.seed = 77;
         SequenceState one = make_state(scene, fine(), Context(2)), two = make_state(scene, other, Context(2));
-        return 1.5 * difference(picture_of(two, 0), picture_of(one, 0));
+        return 1.5 * difference(testing::picture_of(two, 0), testing::picture_of(one, 0));
     }
 };
 
@@ -114,11 +107,22 @@ TEST(FurnitureEdits, APieceIsMovedAndMostLinesStay) {
     const EditOutcome outcome = move_furniture(job.state, "chest", motion, Context(2));
     EXPECT_GT(outcome.lines_reused, 0.5);
     EXPECT_LT(outcome.lines_reused, 1);
-    EXPECT_FALSE(outcome.light_reused);
+    EXPECT_TRUE(outcome.light_reused);
     move_piece(job.scene, 1, motion);
     expect_backgrounds_as_traced(job.state);
     job.expect_as_new(3);
     job.expect_as_new(12);
+}
+
+TEST(FurnitureEdits, LightStartsFromWhatTheOtherPatchesShoneWith) {
+    const auto ignore = [](const Revision&) {};
+    SequenceState state = make_state(furnished_room(), fine(), Context(2));
+    const FrameStatistics cold = step(state, 0, ignore, Context(2));
+    move_furniture(state, "chest", {Vec3(-0.2F, 0, 0), Quat(1, 0, 0, 0)}, Context(2));
+    const FrameStatistics led_on = step(state, 0, ignore, Context(2));
+    EXPECT_GT(led_on.shots, 0U);
+    EXPECT_LT(led_on.shots, cold.shots / 2) << cold.shots;
+    EXPECT_LE(led_on.error_bound, fine().asked_error);
 }
 
 TEST(FurnitureEdits, APieceIsTakenAway) {
@@ -150,13 +154,13 @@ TEST(FurnitureEdits, ALampIsAdded) {
 TEST(FurnitureEdits, ThereAndBackIsAsBefore) {
     Edited job;
     const auto before = job.state.parts().background.background.patch;
-    const Picture picture = picture_of(job.state, 5);
+    const Picture picture = testing::picture_of(job.state, 5);
     // By eighths, so that no corner is rounded.
     move_furniture(job.state, "kite", {Vec3(0.25F, 0, 0.5F), Quat(1, 0, 0, 0)}, Context(2));
-    picture_of(job.state, 5);
+    testing::picture_of(job.state, 5);
     move_furniture(job.state, "kite", {Vec3(-0.25F, 0, -0.5F), Quat(1, 0, 0, 0)}, Context(2));
     expect_backgrounds_as_traced(job.state);
-    EXPECT_LE(difference(picture_of(job.state, 5), picture), 0.02);
+    EXPECT_LE(difference(testing::picture_of(job.state, 5), picture), 0.02);
 }
 
 TEST(FurnitureEdits, AnyOrderOfThemEndsWhereANewJobStarts) {
@@ -200,7 +204,7 @@ TEST(FurnitureEdits, AnyOrderOfThemEndsWhereANewJobStarts) {
             }
         }
         const int frame = static_cast<int>(random() % 30);
-        picture_of(job.state, frame);
+        testing::picture_of(job.state, frame);
         expect_backgrounds_as_traced(job.state);
         if (round % 4 == 3) job.expect_as_new(frame);
         ASSERT_FALSE(HasFailure()) << "round " << round;
@@ -211,13 +215,13 @@ TEST(FurnitureEdits, BeforeTheFirstFrameAllIsTracedOnce) {
     const Pose motion{Vec3(-0.5F, 0, 0), Quat(1, 0, 0, 0)};
     SequenceState state = make_state(furnished_room(), fine(), Context(2));
     EXPECT_EQ(move_furniture(state, "chest", motion, Context(2)).lines_reused, 0);
-    picture_of(state, 2);
+    testing::picture_of(state, 2);
     expect_backgrounds_as_traced(state);
 }
 
 TEST(FurnitureEdits, BadOnesAreNamedAndChangeNothing) {
     Edited job;
-    const Picture before = picture_of(job.state, 3);
+    const Picture before = testing::picture_of(job.state, 3);
     const auto place_of = [](auto&& edit) {
         try {
             edit();
@@ -236,7 +240,7 @@ TEST(FurnitureEdits, BadOnesAreNamedAndChangeNothing) {
     object.name = "new";
     object.triangles[3].material = 99;
     EXPECT_EQ(place_of([&] { add_furniture(job.state, object, Context(1)); }), "object");
-    EXPECT_TRUE(testing::same_bits(picture_of(job.state, 3), before));
+    EXPECT_TRUE(testing::same_bits(testing::picture_of(job.state, 3), before));
     // Stopped in the middle: as it was, though all is to be found again.
     std::stop_source stop;
     stop.request_stop();

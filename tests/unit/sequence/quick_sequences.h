@@ -32,6 +32,14 @@ inline std::vector<Revision> revisions_of(World world, const SequenceConfig& con
     return all;
 }
 
+/// The picture that a running job comes to in a frame.
+inline Picture picture_of(SequenceState& state, int frame, const Context& context = Context(2)) {
+    Picture last;
+    step(
+        state, frame, [&](const Revision& r) { last = r.radiance; }, context);
+    return last;
+}
+
 /// The final picture of a frame by itself.
 inline Picture final_of(World world, const SequenceConfig& config, int frame,
                         const Context& context = Context(2)) {

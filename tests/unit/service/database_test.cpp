@@ -31,7 +31,7 @@ TEST_F(DatabaseTest, RowsOutlastItAndCellsKeepTheirKind) {
     {
         Database database(path_);
         EXPECT_EQ(database.openings(), 1);
-        database.change("INSERT INTO frames VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
+        database.change("INSERT INTO frames VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, 0)",
                         {std::string("a\0b", 3), std::int64_t{7}, std::int64_t{2}, 0.5, Cell(), 0.25, 1.0});
     }
     Database database(path_);
@@ -101,6 +101,26 @@ TEST(StorageError, IsToldToClientsByItsCode) {
     EXPECT_EQ(problem(EROFS).code, "disk_read_only");
     EXPECT_EQ(problem(EIO).code, "io");
     EXPECT_THAT(problem(EIO).detail, testing::Not(testing::HasSubstr("secret")));
+}
+
+TEST_F(DatabaseTest, AFileFromBeforeEditsIsBroughtUpToDate) {
+    {
+        Database database(path_);
+        database.change("DROP TABLE event_logs");
+        database.change("DROP INDEX jobs_by_key");
+        database.change("DROP INDEX jobs_by_state");
+        database.change("DROP TABLE edits");
+        database.change("ALTER TABLE frames DROP COLUMN job_revision");
+        database.change("ALTER TABLE jobs DROP COLUMN strikes");
+        database.change("ALTER TABLE jobs DROP COLUMN strike_frame");
+        database.change("INSERT INTO frames VALUES ('job', 3, 4, 0.5, NULL, NULL, 1)");
+        database.change("PRAGMA user_version = 2");
+    }
+    Database database(path_);
+    EXPECT_EQ(as_integer(database.ask("SELECT job_revision FROM frames").at(0).at(0)), 0);
+    EXPECT_TRUE(database.ask("SELECT * FROM edits").empty());
+    EXPECT_TRUE(database.ask("SELECT strikes, strike_frame FROM jobs").empty());
+    EXPECT_TRUE(database.ask("SELECT * FROM event_logs").empty());
 }
 
 }  // namespace

@@ -21,6 +21,22 @@ TEST(EventStream, WritesEventsAsTheStandardAsks) {
     EXPECT_EQ(sse_text(7, "job", R"({"a":1})"), "id: 7\nevent: job\ndata: {\"a\":1}\n\n");
 }
 
+TEST(EventStream, WritesEventsAsLinesWhereThatIsAskedFor) {
+    EXPECT_EQ(ndjson_text(7, "job", R"({"a":1})"), "{\"event\":\"job\",\"id\":7,\"data\":{\"a\":1}}\n");
+    for (const char* accept :
+         {"application/x-ndjson", "Application/X-NDJSON; q=0.9", "text/html, application/x-ndjson"})
+        EXPECT_EQ(&format_accepted(accept), &ndjson_format) << accept;
+    for (const char* accept :
+         {"", "*/*", "text/event-stream", "text/event-stream, application/x-ndjson", "\xFF"})
+        EXPECT_EQ(&format_accepted(accept), &sse_format) << accept;
+    auto log = std::make_shared<EventLog>();
+    log->append(EventKind::job, "1");
+    EventStreamConfig config{std::chrono::milliseconds(0), std::chrono::seconds(0), &ndjson_format};
+    EventStream stream(log, 0, "", config);
+    EXPECT_EQ(stream.next().bytes, "{\"event\":\"job\",\"id\":1,\"data\":1}\n");
+    EXPECT_EQ(stream.next().bytes, "\n");
+}
+
 TEST(EventStream, SendsItsOpeningThenWhatIsThereThenEnds) {
     auto log = std::make_shared<EventLog>();
     log->append(EventKind::job, "1");

@@ -24,6 +24,7 @@ Scene fake_scene(std::string_view bytes, const SceneUpload& upload) {
     Scene scene;
     scene.name = upload.name;
     scene.materials.resize(1);
+    scene.materials[0].name = "lamp";
     scene.materials[0].emission = Rgb(1);
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -75,6 +76,12 @@ class FakeRun : public JobRun {
         statistics.error_bound = 0.125;
         return statistics;
     }
+    EditOutcome apply(const Edit& edit, const Context& context) override {
+        context.check_stop();
+        const std::lock_guard lock(solver_.mutex_);
+        solver_.edits_.push_back(edit.source.begin().key());
+        return {0.5, 0, true};
+    }
     [[nodiscard]] SequenceStatistics statistics() const override {
         SequenceStatistics statistics;
         statistics.patches = 99;
@@ -85,7 +92,8 @@ class FakeRun : public JobRun {
   private:
     void begin(int frame) {
         std::unique_lock lock(solver_.mutex_);
-        solver_.changed_.wait(lock, [&] { return solver_.is_open_; });
+        solver_.changed_.wait(
+            lock, [&] { return solver_.is_open_ && solver_.steps_.size() < solver_.most_steps_; });
         solver_.steps_.emplace_back(job_.id, frame);
     }
 
@@ -94,7 +102,9 @@ class FakeRun : public JobRun {
 };
 
 RunFactory FakeSolver::factory() {
-    return [this](const Job& job, const Context&) { return std::make_unique<FakeRun>(*this, job); };
+    return [this](const Job& job, const Context&, const std::stop_token&) {
+        return std::make_unique<FakeRun>(*this, job);
+    };
 }
 
 void FakeSolver::close() {
@@ -102,12 +112,23 @@ void FakeSolver::close() {
     is_open_ = false;
 }
 
+void FakeSolver::close_after(std::size_t steps) {
+    const std::lock_guard lock(mutex_);
+    most_steps_ = steps;
+}
+
 void FakeSolver::open() {
     {
         const std::lock_guard lock(mutex_);
         is_open_ = true;
+        most_steps_ = std::numeric_limits<std::size_t>::max();
     }
     changed_.notify_all();
+}
+
+std::vector<std::string> FakeSolver::edits() const {
+    const std::lock_guard lock(mutex_);
+    return edits_;
 }
 
 std::vector<std::pair<std::string, int>> FakeSolver::steps() const {

@@ -3,11 +3,13 @@
 #include <atomic>
 #include <condition_variable>
 #include <filesystem>
+#include <limits>
 #include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "service/store/scene_survey.h"
 #include "service/work/job_run.h"
 #include "solver/base/error.h"
 
@@ -43,8 +45,12 @@ class FakeSolver {
     /// Holds every frame at its beginning until `open`.
     void close();
     void open();
+    /// Lets so many steps begin in all, and holds the next one until `open`.
+    void close_after(std::size_t steps);
     /// (job, frame) of every step begun, in order.
     std::vector<std::pair<std::string, int>> steps() const;
+    /// Kinds of the edits that runs took over, in order; each keeps half of the lines.
+    std::vector<std::string> edits() const;
     /// Runs that exist at this moment.
     int alive() const { return alive_; }
 
@@ -53,7 +59,9 @@ class FakeSolver {
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     bool is_open_ = true;
+    std::size_t most_steps_ = std::numeric_limits<std::size_t>::max();
     std::vector<std::pair<std::string, int>> steps_;
+    std::vector<std::string> edits_;
     std::atomic<int> alive_ = 0;
 };
 

@@ -1,3 +1,4 @@
+#include <atomic>
 #include <chrono>
 #include <fcntl.h>
 #include <memory>
@@ -113,6 +114,32 @@ TEST_F(Hardening, ConnectionsPastTheirNumberAreToldSo) {
     EXPECT_THAT(refused, HasSubstr("too_many_connections"));
     streams.clear();
     EXPECT_THAT(get("/hello"), HasSubstr("world"));
+}
+
+TEST_F(Hardening, ChunksMayNotHaveExtensionsWithoutEnd) {
+    start();
+    EXPECT_THAT(post("Transfer-Encoding: chunked\r\n", "3;a=b\r\nabc\r\n0\r\n\r\n"), EndsWith("abc"));
+    for (const std::string& body :
+         {"3;" + std::string(100'000, 'x') + "\r\nabc\r\n0\r\n\r\n",
+          "3\r\nabc\r\n0\r\nX: " + std::string(100'000, 'x') + "\r\n\r\n", std::string("zz\r\nabc\r\n")})
+        EXPECT_THAT(post("Transfer-Encoding: chunked\r\n", body), StartsWith("HTTP/1.1 400"));
+}
+
+TEST_F(Hardening, ABodyIsJudgedBeforeItComesAndWhileItDoes) {
+    std::atomic<std::size_t> most = 0;
+    config_.body_check = [&](const Request& request, std::size_t bytes) -> std::optional<Reply> {
+        most = std::max(most.load(), bytes);
+        if (bytes <= 1000) return std::nullopt;
+        return problem_reply({429, "quota_exceeded", "too much for " + request.path, "bytes"});
+    };
+    start();
+    EXPECT_THAT(post("Content-Length: 3\r\n", "abc"), EndsWith("abc"));
+    EXPECT_THAT(post("Content-Length: 1001\r\n", ""), HasSubstr("too much for /echo")) << "nothing was sent";
+    most = 0;
+    std::string endless;
+    for (int i = 0; i < 10'000; ++i) endless += "64\r\n" + std::string(100, 'x') + "\r\n";
+    EXPECT_THAT(post("Transfer-Encoding: chunked\r\n", endless), StartsWith("HTTP/1.1 429"));
+    EXPECT_LT(most, 20'000U) << "the rest was not received";
 }
 
 TEST_F(Hardening, AHeadThatDripsIsGivenUp) {

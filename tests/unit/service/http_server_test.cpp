@@ -1,6 +1,7 @@
 #include "service/http/http_server.h"
 
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -102,8 +103,46 @@ TEST_F(HttpServerTest, AFormIsRefusedAndTheConnectionStaysUsable) {
     const auto http = client();
     http->set_keep_alive(true);
     const httplib::MultipartFormDataItems form = {{"file", "content", "a.glb", "model/gltf-binary"}};
-    EXPECT_EQ(http->Post("/v1/scenes", form)->status, 415);
+    EXPECT_EQ(http->Post("/v1/paths", form)->status, 415);
     EXPECT_EQ(http->Get("/healthz")->status, 200);
+}
+
+TEST_F(HttpServerTest, AFormHoldsTheFilesOfAScene) {
+    const httplib::MultipartFormDataItems form = {
+        {"files", "bytes", "room/a.obj", "model/obj"},
+        {"files", std::string("\0\r\n--x", 6), "room/t.png", "image/png"},
+        {"room/note.txt", "no file name", "", ""}};
+    const auto made = client()->Post("/v1/scenes?name=room", form);
+    ASSERT_EQ(made->status, 201) << made->body;
+    auto other = form;
+    other[1].content += "1";
+    EXPECT_EQ(client()->Post("/v1/scenes", form)->status, 200);
+    EXPECT_EQ(client()->Post("/v1/scenes", other)->status, 201);
+    other[1].filename = "../t.png";
+    EXPECT_EQ(client()->Post("/v1/scenes", other)->status, 422);
+    other[1].filename.clear();
+    other[1].content.resize(body_limit + 1, 'x');
+    EXPECT_EQ(client()->Post("/v1/scenes", other)->status, 413);
+}
+
+TEST_F(HttpServerTest, AFormThatIsNoneEndsInAReply) {
+    const std::string head =
+        "POST /v1/scenes HTTP/1.1\r\nHost: x\r\nContent-Type: multipart/form-data; boundary=b\r\n"
+        "Transfer-Encoding: chunked\r\n\r\n";
+    const auto chunk = [](const std::string& text) {
+        std::ostringstream size;
+        size << std::hex << text.size();
+        return size.str() + "\r\n" + text + "\r\n";
+    };
+    const std::string part =
+        "--b\r\nContent-Disposition: form-data; name=\"f\"; filename=\"a.obj\"\r\n\r\nx\r\n--b";
+    EXPECT_THAT(raw(head + chunk(part + "--\r\n") + "0\r\n\r\n", "}"), StartsWith("HTTP/1.1 201"));
+    for (const std::string& text : {std::string("nonsense"), part, part + "nonsense", std::string()})
+        EXPECT_THAT(raw(head + chunk(text) + "0\r\n\r\n", "}"), StartsWith("HTTP/1.1 4")) << text;
+    // What comes after a boundary that is none is held back by the library, but not without an end.
+    std::string endless = head + chunk(part + "nonsense");
+    for (int i = 0; i < 20; ++i) endless += chunk(std::string(100'000, 'x'));
+    EXPECT_THAT(raw(endless, "}"), testing::AnyOf("", StartsWith("HTTP/1.1 4")));
 }
 
 TEST_F(HttpServerTest, AChunkedBodyIsLimitedToo) {

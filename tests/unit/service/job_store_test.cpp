@@ -146,9 +146,9 @@ TEST(JobStore, ListsTheNewestFirst) {
     JobStore jobs;
     const std::string first = jobs.add(draft()).id;
     const std::string second = jobs.add(draft()).id;
-    ASSERT_EQ(jobs.list().size(), 2U);
-    EXPECT_EQ(jobs.list()[0].id, second);
-    EXPECT_EQ(jobs.list()[1].id, first);
+    ASSERT_EQ(jobs.list()->size(), 2U);
+    EXPECT_EQ((*jobs.list())[0].id, second);
+    EXPECT_EQ((*jobs.list())[1].id, first);
 }
 
 TEST(JobStore, UnknownJobsAreNoError) {

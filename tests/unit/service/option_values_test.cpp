@@ -79,5 +79,19 @@ TEST(UnitInMetres, KnowsUnitsAndNumbers) {
     expect_refused([](std::string_view t) { unit_in_metres("--x", t); }, {"", "km", "0", "-1", "inf", "1m"});
 }
 
+TEST(LengthOfTime, HasAUnit) {
+    EXPECT_EQ(length_of_time("x", "90m"), std::chrono::minutes(90));
+    EXPECT_EQ(length_of_time("x", "7d"), std::chrono::hours(168));
+    for (const char* bad : {"", "7", "d", "0d", "-1h", "1.5h", "7 d", "9999999999999999d", "7w"})
+        EXPECT_THROW(length_of_time("x", bad), Error) << bad;
+}
+
+TEST(ByteCount, HasAUnit) {
+    EXPECT_EQ(byte_count("x", "20GB"), 20'000'000'000U);
+    EXPECT_EQ(byte_count("x", "1kB"), 1000U);
+    for (const char* bad : {"", "20", "GB", "0GB", "-1GB", "1.5GB", "20gb", "9999999999TB"})
+        EXPECT_THROW(byte_count("x", bad), Error) << bad;
+}
+
 }  // namespace
 }  // namespace afterglow

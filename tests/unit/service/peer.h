@@ -31,6 +31,8 @@ class Peer {
         return connected_ && ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) ==
                                  static_cast<ssize_t>(bytes.size());
     }
+    /// The server sees the end of what is sent; replies still come.
+    void end_sending() const { ::shutdown(socket_, SHUT_WR); }
     /// All that comes until the server has nothing more to say or `enough` has come.
     std::string receive_until(const std::string& enough) const {
         std::string all;

@@ -54,10 +54,20 @@ class Restart : public testing::Test {
     std::string state(const std::string& id) {
         return json("GET", "/v1/jobs/" + id).at("state").get<std::string>();
     }
+    /// A stream to its end.
+    static std::string read(const Reply& reply) {
+        std::string all;
+        for (bool more = reply.stream != nullptr; more;) {
+            const Piece piece = reply.stream->next();
+            all += piece.bytes;
+            more = piece.then == Piece::Then::more;
+        }
+        return all;
+    }
     std::string wait_for_end(const std::string& id) {
         for (;;) {
             const Reply reply = ask("GET", "/v1/jobs/" + id, "", {{"wait", "10"}});
-            const Json job = parse_json(reply.body, "job");
+            const Json job = parse_json(read(reply), "job");
             if (!job.at("ended").is_null()) return job.at("state").get<std::string>();
         }
     }
@@ -123,6 +133,20 @@ TEST_F(Restart, AStreamIsRejoinedWithAnIdOfAnEarlierLife) {
     EXPECT_THAT(all, HasSubstr("\"frame\":2"));
     EXPECT_THAT(all, HasSubstr("event: end\ndata: {\"state\":\"succeeded\"}"));
     EXPECT_THAT(all, HasSubstr("id: 1000000001\n"));
+}
+
+TEST_F(Restart, PrioritiesHoldAgain) {
+    solver_.close();
+    const std::string first = submit(R"({"frames":"0-2"})");
+    const std::string low = submit(R"({"frames":"0-2"})");
+    const std::string high = submit(R"({"frames":"0-2"})");
+    const Reply changed = ask("PATCH", "/v1/jobs/" + high, R"({"priority": 9})", {},
+                              {{"content-type", "application/merge-patch+json"}});
+    EXPECT_EQ(changed.status, 200) << changed.body;
+    restart();
+    EXPECT_EQ(json("GET", "/v1/jobs/" + high).at("priority"), 9);
+    EXPECT_EQ(json("GET", "/v1/jobs/" + low).at("priority"), 0);
+    for (const std::string& id : {first, low, high}) EXPECT_EQ(wait_for_end(id), "succeeded");
 }
 
 TEST_F(Restart, PausedJobsStayPausedUntilTheyAreResumed) {

@@ -18,7 +18,7 @@ std::size_t files_in(const std::filesystem::path& folder) {
 
 TEST(SceneStore, EqualContentHasOneId) {
     const ScratchFolder folder;
-    SceneStore store(folder.path(), fake_scene);
+    SceneStore store(folder.path(), surveys_here(fake_scene));
     const auto first = store.add("some bytes", {SceneFormat::glb, "one", {}});
     const auto again = store.add("some bytes", {SceneFormat::glb, "two", {}});
     const auto other = store.add("other bytes", {SceneFormat::glb, "one", {}});
@@ -31,7 +31,7 @@ TEST(SceneStore, EqualContentHasOneId) {
 
 TEST(SceneStore, HowBytesAreReadIsPartOfTheId) {
     const ScratchFolder folder;
-    SceneStore store(folder.path(), fake_scene);
+    SceneStore store(folder.path(), surveys_here(fake_scene));
     SceneUpload upload{SceneFormat::obj, "one", {}};
     const auto metres = store.add("bytes", upload);
     upload.load.obj_unit_m = 0.01;
@@ -44,29 +44,29 @@ TEST(SceneStore, HowBytesAreReadIsPartOfTheId) {
 
 TEST(SceneStore, TellsWhatWasRead) {
     const ScratchFolder folder;
-    SceneStore store(folder.path(), fake_scene);
+    SceneStore store(folder.path(), surveys_here(fake_scene));
     const StoredScene scene = store.add("bytes", {SceneFormat::glb, "room.glb", {}}).scene;
     EXPECT_EQ(scene.bytes, 5U);
-    EXPECT_EQ(scene.triangles, 1U);
-    EXPECT_EQ(scene.actors, 0U);
-    EXPECT_EQ(scene.cameras, (std::vector<std::string>{"eye"}));
-    EXPECT_EQ(scene.last_frame, 9);
+    EXPECT_EQ(scene.survey.triangles, 1U);
+    EXPECT_EQ(scene.survey.actors, 0U);
+    EXPECT_EQ(scene.survey.cameras, (std::vector<std::string>{"eye"}));
+    EXPECT_EQ(scene.survey.last_frame, 9);
     EXPECT_EQ(to_json(scene).at("name"), "room.glb");
 }
 
 TEST(SceneStore, WhatCannotBeReadIsNotKept) {
     const ScratchFolder folder;
-    SceneStore store(folder.path(), fake_scene);
+    SceneStore store(folder.path(), surveys_here(fake_scene));
     EXPECT_THROW(store.add("bad bytes", {SceneFormat::glb, "x", {}}), Error);
     EXPECT_THROW(store.add_paths("[1]"), Error);
     EXPECT_THROW(store.add_paths("{"), Error);
     EXPECT_EQ(files_in(folder.path()), 0U);
-    EXPECT_THROW(static_cast<void>(store.world("unknown", "", {})), Error);
+    EXPECT_THROW(static_cast<void>(store.survey("unknown", "", {}, 0)), Error);
 }
 
 TEST(SceneStore, TheRealReaderNamesTheUploadInItsErrors) {
     const ScratchFolder folder;
-    SceneStore store(folder.path());
+    SceneStore store(folder.path(), surveys_here(usual_reader()));
     try {
         store.add("no scene at all", {SceneFormat::glb, "mine.glb", {}});
         FAIL() << "accepted";
@@ -77,7 +77,7 @@ TEST(SceneStore, TheRealReaderNamesTheUploadInItsErrors) {
 
 TEST(SceneStore, PathsAreKeptByContent) {
     const ScratchFolder folder;
-    SceneStore store(folder.path(), fake_scene);
+    SceneStore store(folder.path(), surveys_here(fake_scene));
     const std::string id = store.add_paths("{}");
     EXPECT_EQ(store.add_paths("{}"), id);
     EXPECT_NE(store.add_paths("{ }"), id);

@@ -48,6 +48,83 @@ TEST(Schedule, WaitingJobsAreAdmittedInTheirOrder) {
     EXPECT_EQ(order, (std::vector<std::string>{"a", "b", "d"}));
 }
 
+TEST(Schedule, AHigherPriorityGoesFirst) {
+    Schedule schedule(3);
+    for (const char* job : {"a", "b", "c"}) schedule.add(job);
+    schedule.set_priority("b", 1);
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(schedule.next(), "b");
+    schedule.set_priority("c", 1);
+    std::map<std::string, int> turns;
+    for (int i = 0; i < 10; ++i) ++turns[*schedule.next()];
+    EXPECT_EQ(turns, (std::map<std::string, int>{{"b", 5}, {"c", 5}}));
+    schedule.remove("b");
+    schedule.remove("c");
+    EXPECT_EQ(schedule.next(), "a");
+}
+
+TEST(Schedule, AHigherPriorityTakesThePlaceOfALowerOne) {
+    Schedule schedule(2);
+    for (const char* job : {"a", "b", "c"}) schedule.add(job);
+    schedule.set_priority("a", -1);
+    for (int i = 0; i < 4; ++i) schedule.next();
+    EXPECT_FALSE(schedule.is_resident("a"));
+    schedule.set_priority("d", 2);
+    schedule.add("d");
+    EXPECT_EQ(schedule.next(), "d");
+    EXPECT_TRUE(schedule.is_resident("d"));
+    EXPECT_NE(schedule.is_resident("b"), schedule.is_resident("c"));
+    schedule.remove("d");
+    for (const char* job : {"b", "c"}) {
+        EXPECT_NE(schedule.next(), "a");
+        EXPECT_TRUE(schedule.is_resident(job));
+        schedule.next();
+    }
+    schedule.remove("b");
+    schedule.remove("c");
+    EXPECT_EQ(schedule.next(), "a");
+}
+
+/// Random arrivals, departures and priorities: no turn ever goes to a job while one of higher priority is
+/// there, and equals in memory differ by at most one turn while nothing changes.
+TEST(Schedule, PrioritiesHoldUnderAnyLoad) {
+    for (unsigned seed = 0; seed < 200; ++seed) {
+        std::mt19937 random(seed);
+        Schedule schedule(1 + seed % 4);
+        std::map<std::string, int> there;
+        for (int step = 0; step < 200; ++step) {
+            const std::string job(1, static_cast<char>('a' + random() % 8));
+            const int priority = static_cast<int>(random() % 3) - 1;
+            const auto what = random() % 4;
+            if (what == 0 && !there.contains(job)) {
+                schedule.set_priority(job, priority);
+                schedule.add(job);
+                there[job] = priority;
+            } else if (what == 1) {
+                schedule.remove(job);
+                there.erase(job);
+            } else if (what == 2 && there.contains(job)) {
+                schedule.set_priority(job, priority);
+                there[job] = priority;
+            }
+            const auto turn = schedule.next();
+            ASSERT_EQ(turn.has_value(), !there.empty());
+            if (!turn) continue;
+            ASSERT_TRUE(there.contains(*turn) && schedule.is_resident(*turn));
+            for (const auto& [other, its] : there) ASSERT_LE(its, there.at(*turn)) << other;
+        }
+        std::map<std::string, int> turns;
+        for (int i = 0; i < 40; ++i)
+            if (const auto turn = schedule.next()) ++turns[*turn];
+        int fewest = 40;
+        int most = 0;
+        for (const auto& [job, count] : turns) {
+            fewest = std::min(fewest, count);
+            most = std::max(most, count);
+        }
+        EXPECT_LE(turns.empty() ? 0 : most - fewest, 1) << seed;
+    }
+}
+
 /// Random arrivals and departures: never more than the allowed number in turn, and between two turns of a job
 /// every other resident job has at most one, newly admitted ones aside.
 TEST(Schedule, IsFairUnderAnyLoad) {

@@ -24,14 +24,17 @@ TEST(ServeOptions, DefaultsAreThoseOfTheService) {
 }
 
 TEST(ServeOptions, EveryOptionReachesItsField) {
-    const ServeConfig config = read({"--listen", "0.0.0.0:0", "--data", "d", "--threads", "3",
-                                     "--resident-jobs", "2", "--connections", "9", "--access-log"});
+    const ServeConfig config =
+        read({"--listen", "0.0.0.0:0", "--data", "d", "--threads", "3", "--resident-jobs", "2",
+              "--connections", "9", "--access-log", "--keep-frames-for", "7d", "--keep-at-most", "20GB"});
     EXPECT_EQ(config.address, "0.0.0.0");
     EXPECT_EQ(config.port, 0);
     EXPECT_EQ(config.data_folder, "d");
     EXPECT_EQ(config.threads, 3);
     EXPECT_EQ(config.max_resident, 2U);
     EXPECT_EQ(config.max_connections, 9U);
+    EXPECT_EQ(config.retention.keep_for, std::chrono::hours(7 * 24));
+    EXPECT_EQ(config.retention.keep_at_most, 20'000'000'000U);
     EXPECT_EQ(config.access_log, AccessLog::on);
 }
 

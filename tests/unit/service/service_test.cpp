@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "service/base/identity.h"
 #include "tests/unit/service/fake_solver.h"
+#include "tests/unit/service/zip_builder.h"
 
 // The routes, through the router, without a network.
 
@@ -224,11 +226,127 @@ TEST_F(ServiceTest, PathsAreKept) {
     expect_problem(post("/v1/paths", "text/xml", "{}"), 415, "Content-Type");
 }
 
+TEST_F(ServiceTest, BlobsAreKeptByTheirHash) {
+    const std::string name = sha256("content");
+    const std::string path = "/v1/blobs/" + name;
+    const auto put = [&](const std::string& address, const std::string& body) {
+        return service_.router().handle({"PUT", address, {}, {}, body});
+    };
+    const auto head = [&](const std::string& address) {
+        return service_.router().handle({"HEAD", address, {}, {}, ""});
+    };
+    EXPECT_EQ(head(path).status, 404);
+    expect_problem(put(path, "other"), 422, "body");
+    EXPECT_EQ(json(put(path, "other")).at("code"), "hash_mismatch");
+    expect_problem(put("/v1/blobs/x", "content"), 422, "sha256");
+    EXPECT_EQ(put(path, "content").status, 201);
+    EXPECT_EQ(head(path).status, 200);
+    EXPECT_EQ(put(path, "content").status, 200);
+    EXPECT_EQ(json(put(path, "content")).at("bytes"), 7);
+    const Reply read = get(path);
+    EXPECT_EQ(read.status, 405);
+    EXPECT_THAT(read.headers, Contains(Pair("Allow", "PUT, HEAD")));
+}
+
+TEST_F(ServiceTest, ScenesOfSeveralFilesAreReadTogether) {
+    const std::string manifest = R"({"files": {"a.obj": {"sha256": ")" + sha256("bytes") +
+                                 R"("}, "b.mtl": {"sha256": ")" + sha256("more") + R"("}}})";
+    expect_problem(post("/v1/scenes", "application/vnd.afterglow.files+json", manifest), 422,
+                   "manifest#/files/a.obj/sha256");
+    for (const char* content : {"bytes", "more"})
+        EXPECT_EQ(service_.router().handle({"PUT", "/v1/blobs/" + sha256(content), {}, {}, content}).status,
+                  201);
+    const Reply made =
+        post("/v1/scenes", "application/vnd.afterglow.files+json", manifest, {{"name", "room"}});
+    EXPECT_EQ(made.status, 201) << made.body;
+    EXPECT_EQ(json(made).at("name"), "room");
+    const std::string zip = zip_of({{"b.mtl", "more"}, {"a.obj", "bytes"}});
+    const Reply again = post("/v1/scenes", "application/zip", zip);
+    EXPECT_EQ(again.status, 200);
+    EXPECT_EQ(json(again).at("id"), json(made).at("id"));
+    const std::string id = json(post("/v1/scenes", "application/zip", zip)).at("id").get<std::string>();
+    EXPECT_EQ(post_json("/v1/jobs", R"({"scene":")" + id + R"("})").status, 201);
+}
+
+TEST_F(ServiceTest, AJobOfHigherPriorityGoesFirst) {
+    solver_.close();
+    const std::string in_hand = submit(R"({"frames":"0-2"})");
+    const std::string low = submit(R"({"frames":"0-2"})");
+    const std::string high = submit(R"({"frames":"0-2"})");
+    const Reply changed = service_.router().handle({"PATCH",
+                                                    "/v1/jobs/" + high,
+                                                    {},
+                                                    {{"content-type", "application/merge-patch+json"}},
+                                                    R"({"priority": 3})"});
+    EXPECT_EQ(changed.status, 200);
+    EXPECT_EQ(json(changed).at("priority"), 3);
+    EXPECT_EQ(json(get("/v1/jobs/" + high)).at("priority"), 3);
+    solver_.open();
+    for (const std::string& id : {in_hand, low, high}) read_events(id);
+    std::vector<std::string> order;
+    for (const auto& [job, frame] : solver_.steps()) order.push_back(job);
+    // Whatever was in hand before the change, then the three frames of the high one.
+    const auto first = std::ranges::find(order, high);
+    ASSERT_LE(first - order.begin(), 2);
+    EXPECT_EQ(std::count(first, first + 3, high), 3);
+}
+
 TEST_F(ServiceTest, StoppingEndsEveryJobAndStream) {
     const std::string hanging = submit(R"({"seed":15})");
     const std::string waiting = submit();
     service_.stop();
     for (const auto& id : {hanging, waiting}) EXPECT_THAT(read_events(id), HasSubstr("event: end"));
+}
+
+TEST_F(ServiceTest, WaitingForAJobCountsAsAStream) {
+    solver_.close();
+    const std::string id = submit(R"({"frames":"0"})");
+    Client client;
+    client.quota.streams = 1;
+    const auto wait = [&](const std::string& seconds) {
+        Request request{"GET", "/v1/jobs/" + id, {{"wait", seconds}}, {}, ""};
+        request.client = client;
+        return service_.router().handle(request);
+    };
+    Reply first = wait("60");
+    EXPECT_EQ(wait("60").status, 429);
+    EXPECT_THAT(get("/metrics").body, HasSubstr("afterglow_streams 1\n"));
+    EXPECT_EQ(first.content_type, "application/json");
+    solver_.open();
+    EXPECT_EQ(parse_json(read(first), "job").at("state"), "succeeded");
+    first.stream = nullptr;
+    EXPECT_EQ(parse_json(read(wait("0")), "job").at("id"), id);
+}
+
+TEST_F(ServiceTest, AJobThatIsRemovedLeavesNoPicturesBehind) {
+    for (int turn = 0; turn < 20; ++turn) {
+        const std::string id = submit(R"({"frames":"0-30"})");
+        while (get("/v1/jobs/" + id + "/frames/0/image").status != 200) std::this_thread::yield();
+        EXPECT_EQ(post_json("/v1/jobs/" + id + "/cancel", "").status, 200);
+        EXPECT_EQ(service_.router().handle({"DELETE", "/v1/jobs/" + id, {}, {}, ""}).status, 200);
+    }
+    // By the end of another job what was being written is.
+    read_events(submit());
+    const auto folders = std::filesystem::directory_iterator(folder_.path() / "jobs");
+    EXPECT_LE(std::distance(begin(folders), end(folders)), 1);
+}
+
+TEST_F(ServiceTest, PicturesThatHadToGoAreGone) {
+    const ScratchFolder folder;
+    ServiceConfig config{folder.path(), 1, 4, {}};
+    config.retention.keep_at_most = 1;
+    config.retention.interval = std::chrono::milliseconds(1);
+    const Service service(config, {fake_scene, solver_.factory()});
+    const auto ask = [&](const std::string& method, const std::string& path, const std::string& body = "") {
+        return service.router().handle({method, path, {}, {{"content-type", "application/json"}}, body});
+    };
+    const std::string scene = json(ask("POST", "/v1/scenes", "bytes")).at("id");
+    const std::string id = json(ask("POST", "/v1/jobs", R"({"scene":")" + scene + R"("})")).at("id");
+    while (json(ask("GET", "/v1/jobs/" + id)).at("frames_removed").is_null()) std::this_thread::yield();
+    const Reply image = ask("GET", "/v1/jobs/" + id + "/frames/3/image");
+    EXPECT_EQ(image.status, 410);
+    EXPECT_EQ(json(image).at("code"), "gone");
+    EXPECT_TRUE(json(ask("GET", "/v1/jobs/" + id + "/frames")).at("frames").empty());
 }
 
 }  // namespace

@@ -130,5 +130,18 @@ TEST(Settings, LimitsAreExact) {
     EXPECT_THROW(read(R"({"scene":"s","settings":{"width":101,"height":1}})", limits), Error);
 }
 
+TEST(Settings, AChangeOfAJobIsItsPriorityOnly) {
+    const auto read = [](const std::string& text) {
+        const Json json = parse_json(text, "request");
+        return read_priority(JsonView(json, "request"));
+    };
+    EXPECT_EQ(read("{}"), std::nullopt);
+    EXPECT_EQ(read(R"({"priority": -10})"), -10);
+    EXPECT_EQ(read(R"({"priority": null})"), 0);
+    for (const char* bad : {"[]", "1", R"({"priority": 11})", R"({"priority": 1.5})", R"({"priority": "1"})",
+                            R"({"state": "paused"})", R"({"priority": 1, "more": 1})"})
+        EXPECT_THROW(read(bad), Error) << bad;
+}
+
 }  // namespace
 }  // namespace afterglow

@@ -78,6 +78,40 @@ TEST(Worker, AJobRunsToItsEnd) {
     EXPECT_EQ(bench.solver.alive(), 0);
 }
 
+/// Dies whenever it is to compute the second frame.
+class DyingRun : public JobRun {
+  public:
+    FrameStatistics step(int frame, const RevisionSink& on_revision, const Context&) override {
+        if (frame == 1) throw ChildDied(ChildDied::Cause::memory, "it took too much");
+        on_revision(fake_revision(frame, FakeSolver::revisions));
+        return {};
+    }
+    EditOutcome apply(const Edit&, const Context&) override { return {}; }
+    [[nodiscard]] SequenceStatistics statistics() const override { return {}; }
+    [[nodiscard]] Warnings warnings() const override { return {}; }
+};
+
+TEST(Worker, AJobWhoseProcessesTakeTooMuchMemoryFailsWithThatName) {
+    Bench bench;
+    int begun = 0;
+    Worker worker(bench.jobs, bench.encoder, [&](const Job&, const Context&, const std::stop_token&) {
+        ++begun;
+        return std::make_unique<DyingRun>();
+    });
+    Job draft;
+    draft.frames = {0, 3};
+    const std::string id = bench.jobs.add(draft).id;
+    worker.submit(id);
+    EXPECT_EQ(bench.wait_for(id), JobState::failed);
+    const Job job = *bench.jobs.find(id);
+    ASSERT_TRUE(job.error);
+    EXPECT_EQ(job.error->code, "job_out_of_memory");
+    EXPECT_EQ(job.error->place, "frame 1");
+    EXPECT_EQ(job.frames_done, 1);
+    EXPECT_EQ(begun, 3);
+    EXPECT_EQ(job.warnings.size(), 2U);
+}
+
 TEST(Worker, TheFirstFrameShowsThreeRevisionsBeforeItsFinalOne) {
     Bench bench;
     const auto events = bench.follow(bench.submit(5));
