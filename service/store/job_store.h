@@ -132,7 +132,7 @@ class JobStore {
         Job job;
         std::shared_ptr<EventLog> events;
         std::stop_source stop;
-        std::chrono::steady_clock::time_point last_progress;
+        std::optional<std::chrono::steady_clock::time_point> last_progress;
         std::set<int> final_frames = {};  ///< with a final picture that holds
         std::set<int> stale_frames = {};  ///< with one from before an edit
         std::uint64_t ended = 0;          ///< the count of ends, at its own

@@ -36,7 +36,7 @@ void JobStore::note_progress(const std::string& id, int frame, int frames_before
     job.progress = std::max(job.progress, std::min(whole, 1.0));
     job.doing = progress.doing;
     job.remaining = estimate_remaining(job);
-    if (time - record->last_progress < config_.progress_interval) return;
+    if (record->last_progress && time - *record->last_progress < config_.progress_interval) return;
     record->last_progress = time;
     record->events->append(EventKind::progress, dump(progress_json(job, frame)));
 }

@@ -52,6 +52,13 @@ struct Box {
     [[nodiscard]] bool empty() const { return low.x > high.x; }
     [[nodiscard]] Vec3 centre() const { return 0.5F * (low + high); }
     [[nodiscard]] Vec3 extent() const { return high - low; }
+    /// What touches counts.
+    [[nodiscard]] bool holds(const Vec3& p) const {
+        return glm::all(glm::lessThanEqual(low, p)) && glm::all(glm::lessThanEqual(p, high));
+    }
+    [[nodiscard]] bool meets(const Box& b) const {
+        return glm::all(glm::lessThanEqual(low, b.high)) && glm::all(glm::lessThanEqual(b.low, high));
+    }
 };
 
 /// Right-handed orthonormal frame around a unit normal: z is the normal.

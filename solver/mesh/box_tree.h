@@ -24,14 +24,14 @@ class BoxTree {
         if (!nodes_.empty()) stack[count++] = 0;
         while (count > 0) {
             const Node& node = nodes_[stack[--count]];
-            if (!overlap(node.box, region)) continue;
+            if (!node.box.meets(region)) continue;
             if (node.right != no_index) {
                 stack[count++] = node.right;
                 stack[count++] = static_cast<Index>(&node - nodes_.data()) + 1;
                 continue;
             }
             for (Index i = node.first; i < node.last; ++i)
-                if (overlap(boxes_[order_[i]], region)) visit(order_[i]);
+                if (boxes_[order_[i]].meets(region)) visit(order_[i]);
         }
     }
 
@@ -42,10 +42,6 @@ class BoxTree {
         Index right = no_index;     ///< of an inner node; the left one follows its parent
     };
 
-    static bool overlap(const Box& a, const Box& b) {
-        return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
-               a.low.z <= b.high.z && b.low.z <= a.high.z;
-    }
     void build(Index first, Index last);
 
     std::vector<Box> boxes_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "solver/visibility/tie.h"
+
 namespace afterglow {
 
 namespace {
@@ -38,6 +40,19 @@ std::uint32_t search_body(const SearchedBody& body, const TemporalBsp& tree, con
             break;
     }
     return search_tree(body, tree, local, lanes, hits, work);
+}
+
+/// A body's faces for lanes that may have met other actors before; of those in a tie the lower number stays.
+std::uint32_t search_among(const SearchedBody& body, const TemporalBsp& tree, const PacketQuery& query,
+                           std::uint32_t lanes, LaneHits& hits, SearchWork& work) {
+    const std::array<float, 16> met = hits.distance;
+    for (std::size_t lane = 0; lane < 16; ++lane)
+        if (hits.body[lane] != no_index)
+            hits.distance[lane] = hits.body[lane] < body.body ? before_tie(met[lane]) : after_tie(met[lane]);
+    const std::uint32_t found = search_body(body, tree, query, lanes, hits, work);
+    for (std::size_t lane = 0; lane < 16; ++lane)
+        if (((found >> lane) & 1U) == 0) hits.distance[lane] = met[lane];
+    return found;
 }
 
 }  // namespace
@@ -144,7 +159,7 @@ std::uint32_t follow(const GroupSight& sight, const ActorStage& stage, const Pac
         if (std::none_of(query.actors.begin(), query.actors.end(), comes_between)) continue;
         const std::uint32_t near = looking & lanes_through(query.lines, query.placed_boxes[actor]);
         if (near == 0) continue;
-        found |= search_body(stage.bodies[actor], sight.trees[node], query, near, hits, work.search);
+        found |= search_among(stage.bodies[actor], sight.trees[node], query, near, hits, work.search);
     }
     return found;
 }

@@ -61,9 +61,9 @@ void trace_face(const Views& views, const MovingFaces& faces, Index number, Buff
     const Runs runs = runs_of(views, views.cut(corners));
     for (std::uint32_t mask = runs.met; mask != 0; mask &= mask - 1) {
         const auto l = static_cast<std::size_t>(std::countr_zero(mask));
-        buffer.put(l, {faces.first_face + number, faces.frames.first + static_cast<int>(runs.first[l]),
+        buffer.put(l, {faces.numbers.first + number, faces.frames.first + static_cast<int>(runs.first[l]),
                        faces.frames.first + static_cast<int>(runs.last[l]), runs.depth[l], runs.step[l],
-                       runs.low[l], runs.high[l], runs.along[l]});
+                       runs.low[l], runs.high[l], runs.along[l], faces.numbers});
     }
 }
 

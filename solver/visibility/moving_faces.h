@@ -10,10 +10,10 @@ namespace afterglow {
 /// One body that moves by the same step from frame to frame and does not turn.
 struct MovingFaces {
     const FaceTree& tree;
-    Index first_face = 0;  ///< number of its first face among those of all bodies
-    Pose first;            ///< in its first frame
-    Vec3 step_m{0};        ///< from frame to frame
-    FrameSpan frames;      ///< as the buffer counts them
+    FaceNumbers numbers;  ///< of its faces among those of all bodies
+    Pose first;           ///< in its first frame
+    Vec3 step_m{0};       ///< from frame to frame
+    FrameSpan frames;     ///< as the buffer counts them
 };
 
 /// Puts every face of the body that a ray meets into the buffer, for all its frames at once; or the frames

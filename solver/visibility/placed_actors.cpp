@@ -6,6 +6,7 @@
 #include "solver/mesh/lift.h"
 #include "solver/visibility/sight_lines.h"
 #include "solver/visibility/spacetime_extent.h"
+#include "solver/visibility/tie.h"
 
 namespace afterglow {
 
@@ -58,7 +59,7 @@ std::uint32_t PlacedActors::look(LinePacket& lines, Index body, const PatchMesh&
     for (std::uint32_t left = near; left != 0; left &= left - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(left));
         if (hits[lane].body == no_index) continue;
-        lines.rays.far[lane] = hits[lane].distance;
+        lines.rays.far[lane] = before_tie(hits[lane].distance);
         target[lane] = target_of(hits[lane], local.rays.ray(lane), mesh);
     }
     return near;

@@ -23,7 +23,8 @@ class PlacedActors {
     [[nodiscard]] bool any_moved() const;
 
     /// Traces the lanes of `lines` that meet an actor's box before their `far`, and returns them. Lanes that
-    /// meet the actor itself get its distance as their `far` and what they see written to `target`.
+    /// meet the actor itself get what they see written to `target`, and as their `far` how near the next must
+    /// come to be seen instead: actors are looked at in the order of their numbers, see tie.h.
     std::uint32_t look(LinePacket& lines, Index body, const PatchMesh& mesh, const RayCaster& caster,
                        Index* target) const;
 

@@ -9,6 +9,9 @@
 #include <embree3/rtcore.h>
 
 #include "solver/base/error.h"
+#include "solver/mesh/lift.h"
+#include "solver/visibility/spacetime_extent.h"
+#include "solver/visibility/tie.h"
 
 namespace afterglow {
 
@@ -106,6 +109,13 @@ RTCRay to_embree(const Ray& ray) {
     return out;
 }
 
+RTCRayHit to_query(const Ray& ray) {
+    RTCRayHit out{to_embree(ray), {}};
+    out.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    out.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return out;
+}
+
 RTCIntersectContext make_context(RTCIntersectContextFlags flags) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -121,6 +131,9 @@ struct RayCaster::Scenes {
     std::vector<Geometry> instances;  // one an actor
     SceneHandle actors;               // of the instances
     std::vector<Pose> poses;
+    std::vector<Box> local_boxes, boxes;          // by body, where it is made and where it stands
+    std::vector<std::vector<Index>> near_before;  // by actor: those of lower numbers that its box meets
+    float lift_m = 0;                             // of lines; boxes are larger by twice as much
 
     /// One lane of what Embree reports, and the ray's direction.
     struct Found {
@@ -155,6 +168,48 @@ struct RayCaster::Scenes {
         }
     }
 
+    /// Whether a ray meets an actor no farther off than `far_m`; if so, where.
+    bool meets(Index actor, const Ray& ray, float far_m, Hit& hit) const {
+        const Quat back = glm::conjugate(poses[actor].rotation);
+        const Vec3 direction = back * ray.direction;
+        RTCRayHit query = to_query({back * (ray.origin - poses[actor].translation), direction, far_m});
+        RTCIntersectContext context = make_context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+        rtcIntersect1(bodies[actor], &context, &query);
+        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+        const Vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+        const Side side = glm::dot(direction, normal) < 0 ? Side::front : Side::back;
+        hit = {actor, query.hit.primID, side, query.ray.tfar, query.hit.u, query.hit.v};
+        return true;
+    }
+
+    /// Makes of the nearest hit the one that tie.h says is seen.
+    void settle_tie(const Ray& ray, Hit& hit) const {
+        if (hit.body == no_index || near_before[hit.body].empty()) return;
+        const Vec3 at = ray.origin + hit.distance * ray.direction;
+        for (const Index other : near_before[hit.body])
+            if (boxes[other].holds(at) && meets(other, ray, after_tie(hit.distance), hit)) return;
+    }
+
+    /// The same for a line of an actor, which hides what touches it.
+    void settle_tie(Index home, const Ray& ray, Hit& hit) const {
+        if (hit.body == no_index || hit.body == home) return;
+        if (boxes[home].holds(ray.origin + hit.distance * ray.direction) &&
+            meets(home, ray, hit.distance + lift_m, hit))
+            return;
+        settle_tie(ray, hit);
+    }
+
+    /// Finds out who may be in a tie with whom.
+    void place_boxes() {
+        boxes.resize(local_boxes.size());
+        for (std::size_t b = 1; b < boxes.size(); ++b) {
+            boxes[b] = placed_box(local_boxes[b], poses[b], 2 * lift_m);
+            near_before[b].clear();
+            for (Index other = 1; other < b; ++other)
+                if (boxes[other].meets(boxes[b])) near_before[b].push_back(other);
+        }
+    }
+
     /// Calls `trace(scene, context)` for each scene that is meant. `flags` go for the furniture;
     /// Embree 3.13's coherent packets can loop for ever in a scene of instances when only some lanes are
     /// live, so actors never get them.
@@ -174,7 +229,13 @@ struct RayCaster::Scenes {
 RayCaster::RayCaster(const World& world) : scenes_(std::make_unique<Scenes>()) {
     scenes_->device = Device(rtcNewDevice(nullptr));
     if (static_cast<RTCDevice>(scenes_->device) == nullptr) check(nullptr);
-    for (const Body& body : world.bodies) scenes_->bodies.push_back(build_body(scenes_->device, body));
+    for (const Body& body : world.bodies) {
+        scenes_->bodies.push_back(build_body(scenes_->device, body));
+        Box& box = scenes_->local_boxes.emplace_back();
+        for (const Vec3& position : body.positions) box.add(position);
+    }
+    scenes_->near_before.resize(world.bodies.size());
+    scenes_->lift_m = lift_for(world);
     scenes_->actors = SceneHandle(rtcNewScene(scenes_->device));
     rtcSetSceneFlags(scenes_->actors,
                      static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC));
@@ -200,6 +261,7 @@ void RayCaster::set_poses(std::span<const Pose> poses) {
     }
     rtcCommitScene(scenes_->actors);
     check(scenes_->device);
+    scenes_->place_boxes();
 }
 
 const Pose& RayCaster::pose(Index body) const {
@@ -207,16 +269,16 @@ const Pose& RayCaster::pose(Index body) const {
 }
 
 Hit RayCaster::nearest(const Ray& ray, Scope scope) const {
-    RTCRayHit query{to_embree(ray), {}};
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCRayHit query = to_query(ray);
     // The second scene is traced only up to what the first has found, since tfar shrinks with each hit.
     scenes_->for_scenes(
         scope, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT,
         [&](RTCScene scene, RTCIntersectContext* context) { rtcIntersect1(scene, context, &query); });
-    return scenes_->found({query.hit.geomID, query.hit.instID[0], query.hit.primID, query.ray.tfar,
-                           query.hit.u, query.hit.v, Vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z),
-                           ray.direction});
+    Hit hit =
+        scenes_->found({query.hit.geomID, query.hit.instID[0], query.hit.primID, query.ray.tfar, query.hit.u,
+                        query.hit.v, Vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z), ray.direction});
+    scenes_->settle_tie(ray, hit);
+    return hit;
 }
 
 bool RayCaster::occluded(const Ray& ray, Scope scope) const {
@@ -249,11 +311,21 @@ struct NearestQuery {
 
 }  // namespace
 
-void RayCaster::nearest(const RayPacket& rays, Scope scope, HitPacket& hits) const {
+void RayCaster::nearest_in(const RayPacket& rays, Scope scope, HitPacket& hits) const {
     NearestQuery query(rays);
     scenes_->for_scenes(scope, RTC_INTERSECT_CONTEXT_FLAG_COHERENT,
                         [&](RTCScene scene, RTCIntersectContext* context) { query.trace(scene, context); });
     scenes_->found(query.hit, rays, hits);
+}
+
+void RayCaster::nearest(const RayPacket& rays, Scope scope, HitPacket& hits) const {
+    nearest_in(rays, scope, hits);
+    for (std::size_t k = 0; k < rays.count; ++k) scenes_->settle_tie(rays.ray(k), hits[k]);
+}
+
+void RayCaster::nearest_from(Index home, const RayPacket& rays, HitPacket& hits) const {
+    nearest_in(rays, Scope::everything, hits);
+    for (std::size_t k = 0; k < rays.count; ++k) scenes_->settle_tie(home, rays.ray(k), hits[k]);
 }
 
 void RayCaster::nearest(const RayPacket& rays, Index body, HitPacket& hits) const {

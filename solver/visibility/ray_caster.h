@@ -73,6 +73,7 @@ class RayCaster {
     void set_poses(std::span<const Pose> poses);
     [[nodiscard]] const Pose& pose(Index body) const;
 
+    /// Of actors in a tie the one of the lowest number, see tie.h.
     [[nodiscard]] Hit nearest(const Ray& ray, Scope scope) const;
     [[nodiscard]] bool occluded(const Ray& ray, Scope scope) const;
 
@@ -81,11 +82,16 @@ class RayCaster {
     /// Bit k of the result: lane k is occluded before its `far`.
     [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, Scope scope) const;
 
+    /// The same for lines of an actor's surface, against everything: the actor hides what touches it.
+    void nearest_from(Index actor, const RayPacket& rays, HitPacket& hits) const;
+
     /// The same against one body alone. The rays are in the body's frame, wherever it stands.
     void nearest(const RayPacket& rays, Index body, HitPacket& hits) const;
     [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, Index body) const;
 
   private:
+    void nearest_in(const RayPacket& rays, Scope scope, HitPacket& hits) const;
+
     struct Scenes;
     std::unique_ptr<Scenes> scenes_;
 };

@@ -113,7 +113,10 @@ std::uint64_t trace_lines(const SightLines& lines, const PatchMesh& mesh, const 
                         continue;
                     }
                     lines.rays(b, d, caster.pose(block.body), rays);
-                    caster.nearest(rays, scope, hits);
+                    if (block.body == furniture || scope != Scope::everything)
+                        caster.nearest(rays, scope, hits);
+                    else
+                        caster.nearest_from(block.body, rays, hits);
                     for (Index lane = 0; lane < block.count; ++lane) {
                         sinks.patch[first + lane] = target_of(hits[lane], rays.ray(lane), mesh, caster);
                         if (!sinks.distance.empty()) sinks.distance[first + lane] = hits[lane].distance;

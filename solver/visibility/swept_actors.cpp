@@ -80,6 +80,11 @@ SweptActors::Sweep SweptActors::sweep_of(const SteadyFrames& part, Index body) c
     return sweep;
 }
 
+FaceNumbers SweptActors::numbers(Index body) const {
+    const auto count = static_cast<Index>((*trees_)[body].faces.size());
+    return {first_face_[body], first_face_[body] + count, first_face_[1]};
+}
+
 std::vector<Box> SweptActors::boxes_of(Index body) const {
     // What moves is placed in single precision.
     const Vec3 slack(1e-5F * reach_m_);
@@ -121,8 +126,8 @@ void SweptActors::trace_turning(const Sweep& sweep, std::size_t ball, const RayP
     const int frame = sweep.part.frames.first + static_cast<int>(ball - leaves);
     if (frame > sweep.part.frames.last) return;
     trace_moving_faces(
-        {(*trees_)[sweep.body], first_face_[sweep.body], pose(sweep.body, frame), Vec3(0), {frame, frame}},
-        rays, buffer);
+        {(*trees_)[sweep.body], numbers(sweep.body), pose(sweep.body, frame), Vec3(0), {frame, frame}}, rays,
+        buffer);
 }
 
 template <class Buffer>
@@ -135,7 +140,7 @@ void SweptActors::trace_near(const RayPacket& rays, Buffer& buffer) const {
             if (sweep.part.motion == Motion::turning)
                 trace_turning(sweep, 1, rays, buffer);
             else
-                trace_moving_faces({(*trees_)[sweep.body], first_face_[sweep.body], sweep.part.first,
+                trace_moving_faces({(*trees_)[sweep.body], numbers(sweep.body), sweep.part.first,
                                     sweep.part.step_m, sweep.part.frames},
                                    rays, buffer);
         }
@@ -169,8 +174,8 @@ RayPacket placed(const RayPacket& rays, const Pose& pose) {
 void SweptActors::trace_from(Index body, const RayPacket& rays, TimeBuffer& buffer) const {
     for (const SteadyFrames& own : parts_[body]) {
         const RayPacket here = placed(rays, own.first);
-        trace_moving_faces({(*trees_)[furniture], first_face_[furniture], Pose{}, -own.step_m, own.frames},
-                           here, buffer);
+        trace_moving_faces({(*trees_)[furniture], FaceNumbers{}, Pose{}, -own.step_m, own.frames}, here,
+                           buffer);
         for (Index other = 1; other < parts_.size(); ++other) {
             if (other == body) continue;
             for (const SteadyFrames& part : parts_[other]) {
@@ -181,9 +186,8 @@ void SweptActors::trace_from(Index body, const RayPacket& rays, TimeBuffer& buff
                 Pose first = part.first;
                 first.translation += static_cast<float>(both.first - part.frames.first) * part.step_m -
                                      static_cast<float>(both.first - own.frames.first) * own.step_m;
-                trace_moving_faces(
-                    {(*trees_)[other], first_face_[other], first, part.step_m - own.step_m, both}, here,
-                    buffer);
+                trace_moving_faces({(*trees_)[other], numbers(other), first, part.step_m - own.step_m, both},
+                                   here, buffer);
             }
         }
     }

@@ -85,6 +85,7 @@ class SweptActors {
         std::vector<Sweep> sweeps;
     };
     [[nodiscard]] Sweep sweep_of(const SteadyFrames& part, Index body) const;
+    [[nodiscard]] FaceNumbers numbers(Index body) const;
     template <class Buffer>
     void trace_near(const RayPacket& rays, Buffer& buffer) const;
     template <class Buffer>

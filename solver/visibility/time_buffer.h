@@ -6,8 +6,19 @@
 #include <vector>
 
 #include "solver/visibility/ray_caster.h"
+#include "solver/visibility/tie.h"
 
 namespace afterglow {
+
+/// How the faces of a body are numbered, and from where on those of all actors are: with another actor's
+/// faces it may be in a tie, see tie.h. The furniture is in none.
+struct FaceNumbers {
+    Index first = 0, end = no_index;
+    Index actors = 0;
+
+    [[nodiscard]] bool follow(Index other) const { return (other >= actors) & (other < first); }
+    [[nodiscard]] bool precede(Index other) const { return (other >= end) & (other != no_index); }
+};
 
 /// How far off a face is while a ray meets it: `depth_m` in frame `first`, and further by `step_m` from frame
 /// to frame, but always between `low_m` and `high_m` plus `along_m` for each frame since `first`.
@@ -17,6 +28,7 @@ struct FaceRun {
     float depth_m = 0, step_m = 0;
     float low_m = 0, high_m = 0;
     float along_m = 0;
+    FaceNumbers body = {};  ///< of the body whose face it is
 
     [[nodiscard]] float depth_at(int frames_on) const {
         const auto steps = static_cast<float>(frames_on);
@@ -26,8 +38,9 @@ struct FaceRun {
 
 /// The faces that sixteen fixed rays meet over some consecutive frames: for each ray a depth buffer whose
 /// pixels are the frames. Faces are put in one by one, in any order; the nearest stays, and of two at the
-/// same depth the one of the lower number. This is the lower envelope of the faces' cuts in the plane of time
-/// and distance, taken where frames are. Frames count from 0.
+/// same depth the one of the lower number, where "the same" is wider between two actors. This is the lower
+/// envelope of the faces' cuts in the plane of time and distance, taken where frames are. Frames count from
+/// 0.
 class TimeBuffer {
   public:
     /// `frames` 1 or more.
@@ -57,8 +70,10 @@ class TimeBuffer {
             for (int j = k; j < k + at_once; ++j) {
                 const float at = run.depth_at(j);
                 const bool same = (at == depth[j]) & (face[j] != no_index);
-                const bool nearer =
-                    (j < count) & (at > 0) & ((at < depth[j]) | (same & (run.face < face[j])));
+                const float nearest = run.body.follow(face[j])    ? before_tie(depth[j])
+                                      : run.body.precede(face[j]) ? after_tie(depth[j])
+                                                                  : depth[j];
+                const bool nearer = (j < count) & (at > 0) & ((at < nearest) | (same & (run.face < face[j])));
                 depth[j] = nearer ? at : depth[j];
                 face[j] = nearer ? run.face : face[j];
             }
