@@ -5,7 +5,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from reference_error import Chart  # noqa: E402
+from charts import Axis, Chart, Panel, percent  # noqa: E402
 
 COLOURS = {"afterglow": "#0072b2", "full": "#56b4e9", "cycles": "#d55e00", "path tracer": "#777777", "pov-ray": "#009e73",
            "RenderPark": "#cc79a7", "irradiance cache": "#b8860b"}
@@ -13,9 +13,11 @@ DASHES = {"cornell-slide": "none", "living-room": "5 4"}
 
 
 def draw_error(table, published, path):
-    chart = Chart("Error against CPU time a frame, animations of 49 and 96 frames", "CPU seconds a frame of 256×256, all work ahead included",
-                  (0.03, 300), (0.005, 0.32))
-    chart.grid((0.1, 1, 10, 100), (0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32))
+    chart = Chart("Error against CPU time a frame, animations of 49 and 96 frames", 760, 360)
+    panel = chart.add(Panel((70, 50), (510, 250), Axis(0.03, 300, (0.1, 1, 10, 100)),
+                            Axis(0.005, 0.32, (0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32), percent), "",
+                            "CPU seconds a frame of 256×256, all work ahead included", "relative RMSE"))
+    names = []
     for scene, dashes in DASHES.items():
         found = collections.defaultdict(list)
         for (where, renderer, setting), (seconds, rmse, *_) in sorted(table.items()):
@@ -26,8 +28,10 @@ def draw_error(table, published, path):
         for renderer in (name for name in COLOURS if name in found):
             inside = sorted(p for p in found[renderer] if p[1] < 0.32)
             if inside:
+                panel.line(inside, COLOURS[renderer], dashes)
                 name = renderer if renderer in published else f"{renderer}, {scene.split('-')[0]}"
-                chart.line(name, inside, COLOURS[renderer], dashes)
+                names.append((name, COLOURS[renderer], dashes))
+    chart.legend(592, 66, names, down=True)
     chart.write(path)
 
 

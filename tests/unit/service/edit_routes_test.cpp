@@ -7,6 +7,7 @@
 
 #include "service/api/service.h"
 #include "tests/unit/service/fake_solver.h"
+#include "tests/unit/service/replies.h"
 
 // Edits of jobs through the routes, with a fake solver: what is accepted, what becomes stale, what lasts.
 
@@ -68,13 +69,7 @@ class EditRoutes : public testing::Test {
         return stale;
     }
     std::string all_events(const std::string& id) {
-        const Reply reply = ask("GET", "/v1/jobs/" + id + "/events", "", {{"last-event-id", "0"}});
-        std::string all;
-        for (;;) {
-            const Piece piece = reply.stream->next();
-            all += piece.bytes;
-            if (piece.then == Piece::Then::end) return all;
-        }
+        return read_to_end(ask("GET", "/v1/jobs/" + id + "/events", "", {{"last-event-id", "0"}}));
     }
     void expect_problem(const Reply& reply, int status, const std::string& place) {
         EXPECT_EQ(reply.status, status) << reply.body;

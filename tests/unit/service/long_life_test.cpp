@@ -11,6 +11,7 @@
 
 #include "service/api/service.h"
 #include "tests/unit/service/fake_solver.h"
+#include "tests/unit/service/replies.h"
 
 namespace afterglow {
 namespace {
@@ -37,14 +38,7 @@ class LongLife : public testing::Test {
         return parse_json(reply.body, "job").at("id").get<std::string>();
     }
     std::string events_of(const std::string& id) {
-        const Reply reply = ask("GET", "/v1/jobs/" + id + "/events", "", {{"last-event-id", "0"}});
-        std::string all;
-        for (bool more = reply.stream != nullptr; more;) {
-            const Piece piece = reply.stream->next();
-            all += piece.bytes;
-            more = piece.then == Piece::Then::more;
-        }
-        return all;
+        return read_to_end(ask("GET", "/v1/jobs/" + id + "/events", "", {{"last-event-id", "0"}}));
     }
     std::string ended_job(const std::string& settings = R"({"frames":"0-5"})", const Client& client = {}) {
         const std::string id = submit(settings, client);
@@ -66,8 +60,8 @@ TEST_F(LongLife, WhatIsHeldInMemoryDoesNotGrowWithEndedJobs) {
     for (int k = 0; k < 50; ++k) ids.push_back(ended_job());
     const Service::Held late = service_.held();
     EXPECT_EQ(late.jobs.jobs, 3U);
-    // Progress is told by the clock, so that a job may have some events more; all sixty would be twenty times as
-    // many.
+    // Progress is told by the clock, so that a job may have some events more; all sixty would be twenty times
+    // as many.
     EXPECT_LE(late.jobs.events, 2 * early.jobs.events);
     EXPECT_EQ(late.jobs_with_frames, 3U);
 

@@ -10,6 +10,7 @@
 
 #include "service/api/service.h"
 #include "tests/unit/service/fake_solver.h"
+#include "tests/unit/service/replies.h"
 
 // A service that ends and begins again in the same folder.
 
@@ -54,20 +55,10 @@ class Restart : public testing::Test {
     std::string state(const std::string& id) {
         return json("GET", "/v1/jobs/" + id).at("state").get<std::string>();
     }
-    /// A stream to its end.
-    static std::string read(const Reply& reply) {
-        std::string all;
-        for (bool more = reply.stream != nullptr; more;) {
-            const Piece piece = reply.stream->next();
-            all += piece.bytes;
-            more = piece.then == Piece::Then::more;
-        }
-        return all;
-    }
     std::string wait_for_end(const std::string& id) {
         for (;;) {
             const Reply reply = ask("GET", "/v1/jobs/" + id, "", {{"wait", "10"}});
-            const Json job = parse_json(read(reply), "job");
+            const Json job = parse_json(read_to_end(reply), "job");
             if (!job.at("ended").is_null()) return job.at("state").get<std::string>();
         }
     }

@@ -7,6 +7,7 @@
 
 #include "service/base/identity.h"
 #include "tests/unit/service/fake_solver.h"
+#include "tests/unit/service/replies.h"
 #include "tests/unit/service/zip_builder.h"
 
 // The routes, through the router, without a network.
@@ -42,19 +43,8 @@ class ServiceTest : public testing::Test {
         EXPECT_EQ(reply.status, 201) << reply.body;
         return json(reply).at("id").get<std::string>();
     }
-    /// A stream to its end.
-    static std::string read(const Reply& reply) {
-        std::string all;
-        EXPECT_NE(reply.stream, nullptr) << reply.body;
-        while (reply.stream) {
-            const Piece piece = reply.stream->next();
-            all += piece.bytes;
-            if (piece.then == Piece::Then::end) break;
-        }
-        return all;
-    }
     std::string read_events(const std::string& id) const {
-        return read(get("/v1/jobs/" + id + "/events", {}, {{"last-event-id", "0"}}));
+        return read_to_end(get("/v1/jobs/" + id + "/events", {}, {{"last-event-id", "0"}}));
     }
     static void expect_problem(const Reply& reply, int status, const std::string& place) {
         EXPECT_EQ(reply.status, status) << reply.body;
@@ -188,7 +178,7 @@ TEST_F(ServiceTest, EventsReplayFromAnyPoint) {
     for (auto at = all.find("id: "); at != std::string::npos; at = all.find("\nid: ", at + 1)) {
         const auto begin = all.find("id: ", at) + 4;
         const std::string last = all.substr(begin, all.find('\n', begin) - begin);
-        const std::string rest = read(get("/v1/jobs/" + id + "/events", {{"last_event_id", last}}));
+        const std::string rest = read_to_end(get("/v1/jobs/" + id + "/events", {{"last_event_id", last}}));
         const auto next = all.find("\n\n", begin) + 2;
         EXPECT_THAT(rest, testing::EndsWith(all.substr(next)));
     }
@@ -197,7 +187,7 @@ TEST_F(ServiceTest, EventsReplayFromAnyPoint) {
 TEST_F(ServiceTest, WithoutAnIdTheStreamOpensWithASnapshotAndStillEnds) {
     const std::string id = submit(R"({"frames":"0-1"})");
     read_events(id);
-    const std::string text = read(get("/v1/jobs/" + id + "/events"));
+    const std::string text = read_to_end(get("/v1/jobs/" + id + "/events"));
     EXPECT_THAT(text, testing::ContainsRegex("^id: [0-9]+\nevent: snapshot\ndata: "));
     EXPECT_THAT(text, HasSubstr("\"frames\":[{\"frame\":0"));
     EXPECT_THAT(text, HasSubstr("event: end\n"));
@@ -214,7 +204,7 @@ TEST_F(ServiceTest, TheLiveViewEndsWithTheJob) {
     const std::string id = submit(R"({"frames":"0-3"})");
     const Reply reply = get("/v1/jobs/" + id + "/live");
     EXPECT_THAT(reply.content_type, HasSubstr("multipart/x-mixed-replace"));
-    EXPECT_THAT(read(reply), HasSubstr("\x89PNG"));
+    EXPECT_THAT(read_to_end(reply), HasSubstr("\x89PNG"));
 }
 
 TEST_F(ServiceTest, PathsAreKept) {
@@ -313,9 +303,9 @@ TEST_F(ServiceTest, WaitingForAJobCountsAsAStream) {
     EXPECT_THAT(get("/metrics").body, HasSubstr("afterglow_streams 1\n"));
     EXPECT_EQ(first.content_type, "application/json");
     solver_.open();
-    EXPECT_EQ(parse_json(read(first), "job").at("state"), "succeeded");
+    EXPECT_EQ(parse_json(read_to_end(first), "job").at("state"), "succeeded");
     first.stream = nullptr;
-    EXPECT_EQ(parse_json(read(wait("0")), "job").at("id"), id);
+    EXPECT_EQ(parse_json(read_to_end(wait("0")), "job").at("id"), id);
 }
 
 TEST_F(ServiceTest, AJobThatIsRemovedLeavesNoPicturesBehind) {
