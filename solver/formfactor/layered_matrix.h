@@ -47,13 +47,18 @@ struct CountColumns {
     static constexpr std::size_t most_rows = std::size_t{1} << (32 - row_shift);
 };
 
+/// The entries of a column.
+inline std::span<const std::uint32_t> entries_of(const CountColumns& columns, Index column) {
+    const std::uint64_t begin = columns.column_begin[column];
+    return {columns.entry.data() + begin, static_cast<std::size_t>(columns.column_begin[column + 1] - begin)};
+}
+
 /// Calls `take(row, value)` for each entry of a column, in order.
 template <class Take>
 void for_column(const CountColumns& columns, Index column, const Take& take) {
-    const std::uint64_t end = columns.column_begin[column + 1];
-    for (std::uint64_t e = columns.column_begin[column]; e < end; ++e)
-        take(columns.entry[e] >> CountColumns::row_shift,
-             static_cast<float>(static_cast<int>(columns.entry[e] & CountColumns::most_lines)));
+    for (const std::uint32_t entry : entries_of(columns, column))
+        take(entry >> CountColumns::row_shift,
+             static_cast<float>(static_cast<int>(entry & CountColumns::most_lines)));
 }
 template <class Take>
 void for_column(const FormFactorColumns& columns, Index column, const Take& take) {

@@ -1,6 +1,7 @@
 #include "solver/radiosity/residual_sums.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace afterglow {
@@ -106,6 +107,30 @@ void gather_whole(ResidualState& state, const ResidualProblem& problem, const Co
         for (std::size_t k = first; k < last; ++k)
             state.by_whole[k] = gather_row(problem.matrix.whole, k, state.radiosity);
     });
+    state.whole_sums = ResidualState::WholeSums::gathered;
+}
+
+void add_to_whole(ResidualState& state, const ResidualProblem& problem, const Context& context) {
+    const FormFactorMatrix& whole = problem.matrix.whole;
+    const ResidualState::Workspace& work = state.workspace;
+    context.for_chunks(state.by_whole.size(), whole_rows_per_chunk, [&](std::size_t first, std::size_t last) {
+        // Few patches are pushed; see Pusher::cover.
+        std::array<std::uint64_t, 256> picked;
+        for (std::size_t k = first; k < last; ++k)
+            for (std::uint64_t begin = whole.row_begin[k]; begin < whole.row_begin[k + 1];
+                 begin += picked.size()) {
+                const std::uint64_t end = std::min(begin + picked.size(), whole.row_begin[k + 1]);
+                std::size_t count = 0;
+                for (std::uint64_t e = begin; e < end; ++e) {
+                    picked[count] = e;
+                    count += work.is_pushed[whole.column[e]];
+                }
+                for (std::size_t p = 0; p < count; ++p)
+                    add_light(state.by_whole[k], whole.value[picked[p]],
+                              work.change[whole.column[picked[p]]].v);
+            }
+    });
+    state.whole_sums = ResidualState::WholeSums::added_to;
 }
 
 }  // namespace afterglow
