@@ -66,8 +66,8 @@ TEST_F(LongLife, WhatIsHeldInMemoryDoesNotGrowWithEndedJobs) {
     for (int k = 0; k < 50; ++k) ids.push_back(ended_job());
     const Service::Held late = service_.held();
     EXPECT_EQ(late.jobs.jobs, 3U);
-    // Progress is told by the clock, so that a job may have some events more; all sixty would be twenty times as
-    // many.
+    // Progress is told by the clock, so that a job may have some events more; all sixty would be twenty times
+    // as many.
     EXPECT_LE(late.jobs.events, 2 * early.jobs.events);
     EXPECT_EQ(late.jobs_with_frames, 3U);
 
