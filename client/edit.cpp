@@ -80,6 +80,13 @@ void print_editable(std::ostream& out, const Json& body) {
                 << ")";
         out << '\n';
     }
+    for (const Json& lamp : find_member(body, "lamps")) {
+        out << "lamp      " << one_line(find_string(lamp, "lamp").value_or("")) << " ("
+            << one_line(find_string(lamp, "kind").value_or("")) << ") shines "
+            << place_text(find_member(lamp, "intensity"));
+        if (const auto scale = find_number(lamp, "intensity_scale")) out << " (" << percent(*scale) << ")";
+        out << '\n';
+    }
     for (const Json& camera : find_member(body, "cameras"))
         if (camera.is_string()) out << "camera    " << one_line(camera.get<std::string>()) << '\n';
 }

@@ -53,12 +53,14 @@ Json add_edit(const EditText& text) {
 }
 
 Json light_edit(const EditText& text) {
-    Json light{{"material", text.name}};
-    if (text.scale) light["emission_scale"] = *text.scale;
-    if (!text.emission.empty()) light["emission"] = parse_vector("--emission", text.emission);
-    if (light.size() == 1)
-        throw ClientError(ExitCode::bad_input, "edit light", "needs --scale or --emission");
-    return {{"light", light}};
+    // Only the server knows what the scene calls so.
+    if (text.scale) return {{"light", {{"name", text.name}, {"scale", *text.scale}}}};
+    if (!text.emission.empty())
+        return {
+            {"light", {{"material", text.name}, {"emission", parse_vector("--emission", text.emission)}}}};
+    if (!text.intensity.empty())
+        return {{"light", {{"lamp", text.name}, {"intensity", parse_vector("--intensity", text.intensity)}}}};
+    throw ClientError(ExitCode::bad_input, "edit light", "needs --scale, --emission or --intensity");
 }
 
 Json camera_edit(const EditText& text) {
@@ -94,10 +96,14 @@ CLI::App& define_edit(CLI::App& edit, EditText& text) {
     add_text(move, "--by", text.by, "X,Y,Z in metres");
     move.add_option("--turn", text.turn_degrees, "Degrees about the vertical")->type_name("");
     CLI::App& light = add_kind(edit, text, "light", "Dim or brighten a lamp");
-    add_name(light, text, "The material that shines");
+    add_name(light, text, "The material that shines, or the point, spot or directional light");
     CLI::Option* scale =
-        light.add_option("--scale", text.scale, "Times what it emits in the scene")->type_name("");
-    add_text(light, "--emission", text.emission, "R,G,B in W/m²/sr")->excludes(scale);
+        light.add_option("--scale", text.scale, "Times what it gives in the scene")->type_name("");
+    CLI::Option* emission =
+        add_text(light, "--emission", text.emission, "Of a material: R,G,B in W/m²/sr")->excludes(scale);
+    add_text(light, "--intensity", text.intensity, "Of a light: R,G,B in W/sr, directional: W/m²")
+        ->excludes(scale)
+        ->excludes(emission);
     CLI::App& material = add_kind(edit, text, "material", "Change how much a material reflects");
     add_name(material, text, "The material");
     add_text(material, "--reflectance", text.reflectance, "R,G,B, each from 0 to below 1")->required();

@@ -16,7 +16,7 @@ namespace afterglow::client {
 /// is while the command line is read.
 struct EditText {
     std::string id, name, file;
-    std::string by, position, look_at, emission, reflectance, camera;
+    std::string by, position, look_at, emission, intensity, reflectance, camera;
     std::optional<double> turn_degrees, scale, from_s;
     bool retries = false;
 };

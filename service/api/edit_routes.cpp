@@ -56,7 +56,7 @@ void check_editable(const Job& job) {
 
 /// What is found wrong with an edit is said of the field that it is in.
 Error at_field(const Error& error, const std::string& kind, std::size_t number) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 9> fields{
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 13> fields{
         {{"material", "material"},
          {"piece", "node"},
          {"actor", "node"},
@@ -64,6 +64,10 @@ Error at_field(const Error& error, const std::string& kind, std::size_t number) 
          {"camera", "camera"},
          {"emission", "emission"},
          {"emission_scale", "emission_scale"},
+         {"lamp", "lamp"},
+         {"name", "name"},
+         {"intensity", "intensity"},
+         {"intensity_scale", "intensity_scale"},
          {"reflectance", "reflectance"},
          {"motion", "translation"}}};
     std::string place = "request#/edits/" + std::to_string(number) + "/" + kind;

@@ -18,9 +18,10 @@ constexpr const char* body_name = "request";  // stands for the body in messages
 
 /// What is found wrong with a job's scene or paths is said of the field that names them.
 SceneSurvey survey_of(const RouteContext& context, const JobRequest& request) {
-    if (!context.scenes.find(request.scene))
+    if (!context.scenes.find(request.scene) || !context.scenes.ask_for(request.scene))
         throw Error(ErrorKind::not_found, "request#/scene", "there is no such scene; upload it again");
-    if (!request.paths.empty() && !context.scenes.has_paths(request.paths))
+    if (!request.paths.empty() &&
+        (!context.scenes.has_paths(request.paths) || !context.scenes.ask_for(request.paths)))
         throw Error(ErrorKind::not_found, "request#/paths", "there are no such paths; upload them again");
     return context.scenes.survey(request.scene, request.paths, request.settings.background,
                                  request.settings.sequence.frames_per_second);

@@ -67,7 +67,7 @@ Service::Service(const ServiceConfig& config, ServiceParts parts)
               : child_runs(scenes_,
                            {config.data_folder / "cache", {config.job_memory, {}}, config.survey.program}),
           {config.threads, config.max_resident}),
-      retention_(jobs_, frames_, blobs_, config.data_folder / "cache", config.retention) {
+      retention_(jobs_, frames_, scenes_, blobs_, config.data_folder / "cache", config.retention) {
     const RouteContext context{
         scenes_, blobs_,
         jobs_,   frames_,

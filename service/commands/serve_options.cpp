@@ -1,5 +1,6 @@
 #include "service/commands/serve_options.h"
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ using Text = std::optional<std::string>;
 /// The options as they were typed; absent where not given.
 struct Typed {
     Text listen, data, threads, resident_jobs, job_memory, connections, token_file, keep_frames_for,
-        keep_at_most;
+        keep_at_most, keep_uploads_for;
     std::vector<std::string> hosts;
     bool access_log = false;
 };
@@ -36,6 +37,9 @@ void declare_options(CLI::App& app, Typed& typed) {
                    "How long after a job's end its pictures and events are kept, as 90m, 12h or 7d [always]");
     app.add_option("--keep-at-most", typed.keep_at_most,
                    "Bytes of pictures and cache, as 500MB or 20GB; the oldest go first [any]");
+    app.add_option("--keep-uploads-for", typed.keep_uploads_for,
+                   "How long scenes and paths that no job has are kept after they were last used, 10m or "
+                   "more [always]");
     app.add_option(
         "--token-file", typed.token_file,
         "Who may use it, a line each: NAME viewer|submitter|admin TOKEN [LIMIT=N ...] [everybody]");
@@ -57,6 +61,15 @@ void set_listen(ServeConfig& config, const std::string& text) {
                     "expected ADDRESS:PORT such as 127.0.0.1:8080 or [::1]:8080, found \"" + text + "\"");
     config.address = address;
     config.port = static_cast<int>(whole_number("--listen", text.substr(colon + 1), 0, 65535));
+}
+
+void set_keep_uploads_for(ServeConfig& config, const std::string& text) {
+    // Reading a scene for a job takes up to a minute of processor time, before the job is there.
+    constexpr std::chrono::minutes least{10};
+    config.retention.keep_uploads_for = length_of_time("--keep-uploads-for", text);
+    if (*config.retention.keep_uploads_for < least)
+        throw Error(ErrorKind::invalid_input, "--keep-uploads-for",
+                    "must be 10m or more, found \"" + text + "\"");
 }
 
 }  // namespace
@@ -84,6 +97,7 @@ std::variant<ServeConfig, HelpText> read_serve_options(std::span<const char* con
     if (typed.keep_frames_for)
         config.retention.keep_for = length_of_time("--keep-frames-for", *typed.keep_frames_for);
     if (typed.keep_at_most) config.retention.keep_at_most = byte_count("--keep-at-most", *typed.keep_at_most);
+    if (typed.keep_uploads_for) set_keep_uploads_for(config, *typed.keep_uploads_for);
     if (typed.token_file) {
         if (typed.token_file->empty())
             throw Error(ErrorKind::invalid_input, "--token-file", "the path is empty");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "service/base/overloaded.h"
 #include "solver/scene/default_camera.h"
@@ -10,17 +11,70 @@
 
 namespace afterglow {
 
-void resolve(Edit& edit, const World& uploaded) {
-    auto* light = std::get_if<LightEdit>(&edit.what);
-    if (light == nullptr || light->emission) return;
-    const Rgb emitted =
-        uploaded.materials[index_named(uploaded.materials, 0, light->material, "material")].emission;
+namespace {
+
+/// What a material emits in the scene as uploaded.
+Rgb emission_in(const World& uploaded, const std::string& material) {
+    const Rgb emitted = uploaded.materials[index_named(uploaded.materials, 0, material, "material")].emission;
     if (max_channel(emitted) <= 0)
         throw Error(ErrorKind::invalid_input, "emission_scale",
                     "this material emits nothing in the scene; give its emission");
-    light->emission = emitted * static_cast<float>(light->emission_scale.value_or(1));
+    return emitted;
+}
+
+/// How strongly the lamps of a name shine there.
+Rgb intensity_in(const World& uploaded, const std::string& lamp) {
+    const std::vector<Index> lamps = lamps_named(uploaded, lamp);
+    const Rgb intensity = uploaded.lights[lamps.front()].light.intensity;
+    for (const Index other : lamps)
+        if (uploaded.lights[other].light.intensity != intensity)
+            throw Error(ErrorKind::invalid_input, "intensity_scale",
+                        "lamps of this name are of several strengths in the scene; give their intensity");
+    if (max_channel(intensity) <= 0)
+        throw Error(ErrorKind::invalid_input, "intensity_scale",
+                    "this lamp is off in the scene; give its intensity");
+    return intensity;
+}
+
+/// Which of the two has a name; of materials those count that shine.
+LightEdit::Of find_light(const World& uploaded, const std::string& name) {
+    bool is_material = false, is_lamp = false;
+    std::set<std::string> listed;
+    std::string names;
+    const auto note = [&](const std::string& other) {
+        if (listed.insert(other).second) names += (names.empty() ? "; there are: " : ", ") + other;
+        return other == name;
+    };
+    for (const Material& material : uploaded.materials)
+        if (max_channel(material.emission) > 0 && note(material.name)) is_material = true;
+    for (const PlacedLight& placed : uploaded.lights)
+        if (note(placed.light.name)) is_lamp = true;
+    if (is_material && is_lamp)
+        throw Error(ErrorKind::invalid_input, "name",
+                    "a material that shines and a lamp are both called \"" + name +
+                        "\"; give material with its emission or emission_scale, or lamp with its intensity "
+                        "or intensity_scale");
+    if (is_material || is_lamp) return is_lamp ? LightEdit::Of::lamp : LightEdit::Of::material;
+    throw Error(ErrorKind::not_found, "name", "nothing called \"" + name + "\" shines in the scene" + names);
+}
+
+}  // namespace
+
+void resolve(Edit& edit, const World& uploaded) {
+    auto* light = std::get_if<LightEdit>(&edit.what);
+    if (light == nullptr || light->light) return;
     Json& source = edit.source["light"];
-    source["emission"] = {light->emission->r, light->emission->g, light->emission->b};
+    if (light->of == LightEdit::Of::either) {
+        light->of = find_light(uploaded, light->name);
+        // What is kept says which it is.
+        const bool is_lamp = light->of == LightEdit::Of::lamp;
+        source = {{is_lamp ? "lamp" : "material", light->name},
+                  {is_lamp ? "intensity_scale" : "emission_scale", light->scale.value_or(1)}};
+    }
+    const bool is_lamp = light->of == LightEdit::Of::lamp;
+    const Rgb in_scene = is_lamp ? intensity_in(uploaded, light->name) : emission_in(uploaded, light->name);
+    light->light = in_scene * static_cast<float>(light->scale.value_or(1));
+    source[is_lamp ? "intensity" : "emission"] = {light->light->r, light->light->g, light->light->b};
 }
 
 ObjectKind kind_of(const World& world, const std::string& node) {
@@ -71,7 +125,10 @@ void apply(World& world, const Edit& edit) {
             const Index piece = index_named(world.pieces, 0, move.node, "piece");
             move_piece(world, piece, motion_of(world, piece, move.shift));
         },
-        [&](const LightEdit& light) { set_emission(world, light.material, light.emission.value_or(Rgb(0))); },
+        [&](const LightEdit& edited) {
+            const auto set = edited.of == LightEdit::Of::lamp ? set_intensity : set_emission;
+            set(world, edited.name, edited.light.value_or(Rgb(0)));
+        },
         [&](const MaterialEdit& material) {
             set_reflectance(world, material.material, material.reflectance);
         },

@@ -18,11 +18,14 @@ struct MoveEdit {
     Shift shift;
 };
 
-/// What a material emits, W/m²/sr, or how many times what it emits in the scene.
+/// How brightly the surfaces of a material shine, or the lamps without surface of a name.
 struct LightEdit {
-    std::string material;
-    std::optional<Rgb> emission;           ///< absent only until `resolved`
-    std::optional<double> emission_scale;  ///< as the client gave it
+    enum class Of { material, lamp, either };
+    Of of = Of::material;  ///< `either` only until resolved
+    std::string name;
+    /// W/m²/sr of a material, W/sr of a lamp, W/m² of a directional one; absent only until resolved.
+    std::optional<Rgb> light;
+    std::optional<double> scale;  ///< times what it is in the scene, as the client gave it
 };
 
 /// What share of light a material reflects.
@@ -72,8 +75,10 @@ struct JobEdit {
     std::optional<double> reused;  ///< share of lines that the running job kept, in [0, 1]; once applied
 };
 
-/// Settles what depends on the uploaded scene alone. Errors: invalid_input, "emission_scale", for a material
-/// that emits nothing there; not_found.
+/// Settles what depends on the uploaded scene alone: what a light edit is of, and how bright that becomes.
+/// Errors: not_found; invalid_input: "emission_scale" for a material that emits nothing there,
+/// "intensity_scale" for lamps that are off there or of several strengths, "name" where a material that
+/// shines and a lamp both have it.
 void resolve(Edit& edit, const World& uploaded);
 
 /// Changes a world as an edit says; a camera edit changes nothing there. Errors: those of world_edits.h and

@@ -1,6 +1,7 @@
 #include "service/jobs/edit_json.h"
 
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -39,12 +40,25 @@ MoveEdit read_move(const JsonView& view) {
 }
 
 LightEdit read_light(const JsonView& view) {
-    view.allow_only({"material", "emission", "emission_scale"});
+    constexpr double largest_scale = 1e6;
     LightEdit edit;
-    edit.material = view.at("material").as_string();
-    if (const auto field = view.find("emission")) edit.emission = as_rgb(*field);
-    if (const auto field = view.find("emission_scale")) edit.emission_scale = field->as_number_in(0, 1e6);
-    if (!edit.emission && !edit.emission_scale) view.fail("needs emission or emission_scale");
+    if (const auto name = view.find("name")) {
+        view.allow_only({"name", "scale"});
+        edit.of = LightEdit::Of::either;
+        edit.name = name->as_string();
+        edit.scale = view.at("scale").as_number_in(0, largest_scale);
+        return edit;
+    }
+    const bool is_lamp = view.find("lamp").has_value();
+    const std::string of = is_lamp ? "lamp" : "material", light = is_lamp ? "intensity" : "emission";
+    const std::string scale = light + "_scale";
+    view.allow_only({of, light, scale});
+    if (!view.find(of)) view.fail("needs a material, a lamp, or a name that one of them has");
+    edit.of = is_lamp ? LightEdit::Of::lamp : LightEdit::Of::material;
+    edit.name = view.at(of).as_string();
+    if (const auto field = view.find(light)) edit.light = as_rgb(*field);
+    if (const auto field = view.find(scale)) edit.scale = field->as_number_in(0, largest_scale);
+    if (!edit.light && !edit.scale) view.fail("needs " + light + " or " + scale);
     return edit;
 }
 
@@ -181,6 +195,47 @@ Json material_json(const Material& material, const Material& uploaded) {
             {"emission_scale", emitted > 0 ? Json(max_channel(material.emission) / emitted) : Json(nullptr)}};
 }
 
+const char* name_of(Light::Kind kind) {
+    switch (kind) {
+        case Light::Kind::point:
+            return "point";
+        case Light::Kind::spot:
+            return "spot";
+        case Light::Kind::directional:
+            return "directional";
+    }
+    return "";
+}
+
+/// One entry a name: those that share it are edited together.
+Json lamps_json(const World& world, const World& uploaded) {
+    struct Named {
+        Index first = no_index;
+        bool is_of_one_strength = true;  ///< in the scene as uploaded
+    };
+    std::map<std::string, Named> lamps;
+    for (Index l = 0; l < uploaded.lights.size(); ++l) {
+        const Light& light = uploaded.lights[l].light;
+        Named& named = lamps[light.name];
+        if (named.first == no_index) named.first = l;
+        if (light.intensity != uploaded.lights[named.first].light.intensity) named.is_of_one_strength = false;
+    }
+    Json list = Json::array();
+    for (Index l = 0; l < world.lights.size(); ++l) {
+        const Light& light = world.lights[l].light;
+        const Named& named = lamps.at(light.name);
+        if (named.first != l) continue;
+        const float in_scene =
+            named.is_of_one_strength ? max_channel(uploaded.lights[l].light.intensity) : 0.0F;
+        list.push_back({{"lamp", light.name},
+                        {"kind", name_of(light.kind)},
+                        {"intensity", json_of(light.intensity)},
+                        {"intensity_scale",
+                         in_scene > 0 ? Json(max_channel(light.intensity) / in_scene) : Json(nullptr)}});
+    }
+    return list;
+}
+
 }  // namespace
 
 Json editable_json(const World& world, const World& uploaded) {
@@ -198,6 +253,7 @@ Json editable_json(const World& world, const World& uploaded) {
     for (const PlacedCamera& placed : world.cameras) cameras.push_back(placed.camera.name);
     return {{"objects", std::move(objects)},
             {"materials", std::move(materials)},
+            {"lamps", lamps_json(world, uploaded)},
             {"cameras", std::move(cameras)}};
 }
 

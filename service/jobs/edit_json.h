@@ -24,8 +24,8 @@ Json to_json(const JobEdit& edit, int revision);
 Json sources_of(const std::vector<Edit>& edits);
 std::vector<Edit> edits_of_sources(const Json& sources);
 
-/// What can be edited in a world, and how it now is: objects with their bounds at time 0, materials, cameras.
-/// `uploaded`: before any edits, for how much of its emission a lamp now has.
+/// What can be edited in a world, and how it now is: objects with their bounds at time 0, materials, lamps
+/// without surface, cameras. `uploaded`: before any edits, for how much of its light a lamp now gives.
 Json editable_json(const World& world, const World& uploaded);
 
 }  // namespace afterglow

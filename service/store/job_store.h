@@ -61,6 +61,8 @@ class JobStore {
     [[nodiscard]] std::vector<Job> unended() const;
     /// Those that have ended and still have their pictures.
     [[nodiscard]] std::vector<Job> ended_with_frames() const;
+    /// The ids of scenes and paths that any of them has, and the empty id where one has no paths.
+    [[nodiscard]] std::set<std::string> uploads_used() const;
     struct Counts {
         std::map<JobState, std::int64_t> jobs;  ///< by each state that there is
         std::int64_t frames = 0;                ///< finished, of all jobs

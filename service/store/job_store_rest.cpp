@@ -172,6 +172,14 @@ std::vector<Job> JobStore::ended_with_frames() const {
     return jobs;
 }
 
+std::set<std::string> JobStore::uploads_used() const {
+    if (table_ != nullptr) return table_->uploads_used();
+    const std::lock_guard lock(mutex_);
+    std::set<std::string> ids;
+    for (const auto& [id, record] : records_) ids.insert({record.job.scene, record.job.paths});
+    return ids;
+}
+
 JobStore::Counts JobStore::counts() const {
     const std::lock_guard lock(mutex_);
     Counts counts;

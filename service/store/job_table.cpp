@@ -104,6 +104,14 @@ std::vector<std::string> JobTable::with_frames_at_rest() {
     return ids;
 }
 
+std::set<std::string> JobTable::uploads_used() {
+    std::set<std::string> ids;
+    for (const Row& row : database_.ask("SELECT json_extract(body, '$.scene') FROM jobs UNION "
+                                        "SELECT json_extract(body, '$.paths') FROM jobs"))
+        ids.insert(as_text(row[0]));
+    return ids;
+}
+
 std::map<JobState, std::int64_t> JobTable::count_by_state() {
     std::map<JobState, std::int64_t> counts;
     for (const Row& row :

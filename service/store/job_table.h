@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,8 @@ class JobTable {
     std::vector<Entry> page(std::int64_t before, const std::optional<JobState>& state, std::size_t limit);
     /// The ids of jobs that have ended and still have their pictures.
     std::vector<std::string> with_frames_at_rest();
+    /// The ids of scenes and paths that any job has, and the empty id where one has no paths.
+    std::set<std::string> uploads_used();
     /// How many there are of each state that there is, as it is in the table.
     std::map<JobState, std::int64_t> count_by_state();
     /// Finished frames that no edit has made stale, of all jobs.

@@ -1,6 +1,7 @@
 #include "service/store/retention.h"
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -20,15 +21,17 @@ struct Retention::Item {
     std::optional<BlobStore::Entry> blob = {};  ///< or a blob
 };
 
-Retention::Retention(JobStore& jobs, FrameStore& frames, BlobStore& blobs, fs::path cache_folder,
-                     const RetentionConfig& config, Clock now)
+Retention::Retention(JobStore& jobs, FrameStore& frames, SceneStore& scenes, BlobStore& blobs,
+                     fs::path cache_folder, const RetentionConfig& config, Clock now)
     : jobs_(jobs),
       frames_(frames),
+      scenes_(scenes),
       blobs_(blobs),
       cache_folder_(std::move(cache_folder)),
       config_(config),
       now_(std::move(now)) {
-    if (config_.keep_for || config_.keep_at_most) thread_ = std::thread([this] { loop(); });
+    if (config_.keep_for || config_.keep_at_most || config_.keep_uploads_for)
+        thread_ = std::thread([this] { loop(); });
 }
 
 Retention::~Retention() {
@@ -66,6 +69,16 @@ void Retention::tidy() {
         remove(item);
         kept -= item.bytes;
     }
+    if (config_.keep_uploads_for) remove_unused_uploads();
+}
+
+void Retention::remove_unused_uploads() {
+    // Listed before the jobs: what is asked for in between is younger than listed, and stays.
+    const std::vector<SceneStore::Entry> uploads = scenes_.list();
+    const std::set<std::string> used = jobs_.uploads_used();
+    for (const SceneStore::Entry& upload : uploads)
+        if (now_() - upload.asked > *config_.keep_uploads_for && !used.contains(upload.id))
+            scenes_.remove(upload);
 }
 
 std::vector<Retention::Item> Retention::oldest_first() const {

@@ -121,7 +121,8 @@ std::filesystem::path SceneStore::file_of(const std::string& id) const {
 SceneStore::Added SceneStore::add(std::string_view bytes, const SceneUpload& upload,
                                   std::uint64_t max_triangles) {
     const std::string id = id_of(bytes, upload);
-    if (auto known = find(id)) return {*std::move(known), Added::Outcome::known};
+    if (ask_for(id))
+        if (auto known = find(id)) return {*std::move(known), Added::Outcome::known};
     const Arrival arrival(file_of("arrival-" + std::to_string(++arrivals_)), bytes);
     StoredScene scene{id, upload, bytes.size(), surveyor_({arrival.path, upload, {}}, 0)};
     if (scene.survey.triangles > max_triangles)
@@ -140,6 +141,7 @@ std::string SceneStore::add_paths(std::string_view json_text) {
     const Json document = parse_json(json_text, paths_name);
     if (!document.is_object()) JsonView(document, paths_name).fail("expected an object");
     std::string id = content_id("paths|" + sha256(json_text));
+    if (ask_for(id)) return id;
     const std::lock_guard lock(mutex_);
     if (!paths_.contains(id)) {
         keep(id, json_text, "INSERT OR IGNORE INTO paths VALUES (?1, ?2)",
@@ -159,6 +161,45 @@ std::optional<StoredScene> SceneStore::find(const std::string& id) const {
 bool SceneStore::has_paths(const std::string& id) const {
     const std::lock_guard lock(mutex_);
     return paths_.contains(id);
+}
+
+bool SceneStore::ask_for(const std::string& id) {
+    const std::lock_guard lock(mutex_);
+    if (!scenes_.contains(id) && !paths_.contains(id)) return false;
+    std::error_code ignored;  // then it may go sooner
+    std::filesystem::last_write_time(file_of(id), std::filesystem::file_time_type::clock::now(), ignored);
+    return true;
+}
+
+/// The time of its file, so that it outlasts the process. Callers hold the lock.
+Timestamp SceneStore::asked(const std::string& id) const {
+    std::error_code error;
+    const auto time = std::filesystem::last_write_time(file_of(id), error);
+    // What cannot be asked is not said to be old.
+    if (error) return std::chrono::system_clock::now();
+    return std::chrono::time_point_cast<Timestamp::duration>(std::chrono::file_clock::to_sys(time));
+}
+
+std::vector<SceneStore::Entry> SceneStore::list() const {
+    const std::lock_guard lock(mutex_);
+    std::vector<Entry> entries;
+    for (const auto& [id, scene] : scenes_) entries.push_back({id, asked(id)});
+    for (const auto& [id, bytes] : paths_) entries.push_back({id, asked(id)});
+    return entries;
+}
+
+void SceneStore::remove(const Entry& entry) {
+    const std::lock_guard lock(mutex_);
+    if (asked(entry.id) > entry.asked) return;
+    // The row first: a file without one is removed at the next start.
+    if (database_ != nullptr) {
+        const char* table = scenes_.contains(entry.id) ? "scenes" : "paths";
+        database_->change("DELETE FROM " + std::string(table) + " WHERE id = ?1", {entry.id});
+    }
+    scenes_.erase(entry.id);
+    paths_.erase(entry.id);
+    std::error_code ignored;
+    std::filesystem::remove(file_of(entry.id), ignored);
 }
 
 WorldSource SceneStore::source(const std::string& scene, const std::string& paths,

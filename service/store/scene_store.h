@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -11,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "service/base/timestamp.h"
 #include "service/jobs/job.h"
 #include "service/store/database.h"
 #include "service/store/scene_survey.h"
@@ -53,6 +55,17 @@ class SceneStore {
 
     [[nodiscard]] std::optional<StoredScene> find(const std::string& id) const;
     [[nodiscard]] bool has_paths(const std::string& id) const;
+    /// Whether a scene or paths are there; if so they were now asked for.
+    bool ask_for(const std::string& id);
+
+    /// A scene or paths, and when it was last uploaded or asked for.
+    struct Entry {
+        std::string id;
+        std::chrono::system_clock::time_point asked;
+    };
+    [[nodiscard]] std::vector<Entry> list() const;
+    /// Removes an upload unless it was asked for after `asked`. Errors: StorageError.
+    void remove(const Entry& entry);
 
     /// Where the scene is read from with the paths applied (none where `paths` is empty) and the background
     /// replaced. Errors: not_found for ids.
@@ -67,6 +80,7 @@ class SceneStore {
 
   private:
     [[nodiscard]] std::filesystem::path file_of(const std::string& id) const;
+    [[nodiscard]] Timestamp asked(const std::string& id) const;
     void load();
     void keep(const std::string& id, std::string_view bytes, const std::string& sql, const Cell& about);
 

@@ -8,13 +8,21 @@ export function move_of(node, translation) {
   return translation.some((metres) => metres !== 0) ? { move: { node, translation } } : null;
 }
 
-export function dim_of(material, percent_of_scene) {
-  return { light: { material, emission_scale: percent_of_scene / 100 } };
+export function dim_of({ kind, name }, percent_of_scene) {
+  const scale = percent_of_scene / 100;
+  return { light: kind === "lamp" ? { lamp: name, intensity_scale: scale } : { material: name, emission_scale: scale } };
 }
 
-/** Lamps of a reply of `/editable`: what emits in the scene as it was uploaded. */
+/**
+ * Lamps of a reply of `/editable`: what gives light in the scene as it was uploaded, materials and lights without surface. `label` tells
+ * apart what shares a name.
+ */
 export function lamps_of(editable) {
-  return editable.materials.filter((m) => m.emission_scale !== null);
+  const materials = editable.materials.map((m) => ({ kind: "material", name: m.material, scale: m.emission_scale }));
+  const lamps = editable.lamps.map((l) => ({ kind: "lamp", name: l.lamp, scale: l.intensity_scale }));
+  const shining = [...materials, ...lamps].filter((lamp) => lamp.scale !== null);
+  const is_alone = (lamp) => shining.filter((other) => other.name === lamp.name).length === 1;
+  return shining.map((lamp) => ({ ...lamp, label: is_alone(lamp) ? lamp.name : `${lamp.name} (${lamp.kind})` }));
 }
 
 /** What became of a job's newest edit, in words. */
@@ -44,9 +52,11 @@ export function make_edit_panel({ form, on_edited, on_problem }) {
     field("dimmed").value = `${field("dim").value} % of what it is in the scene`;
   };
 
+  const chosen_lamp = () => editable && lamps_of(editable).find((lamp) => lamp.label === field("lamp").value);
+
   const show_lamp = () => {
-    const lamp = editable && lamps_of(editable).find((m) => m.material === field("lamp").value);
-    if (lamp) field("dim").value = Math.round(100 * lamp.emission_scale);
+    const lamp = chosen_lamp();
+    if (lamp) field("dim").value = Math.round(100 * lamp.scale);
     show_dim();
   };
 
@@ -55,7 +65,7 @@ export function make_edit_panel({ form, on_edited, on_problem }) {
     if (job?.id !== id) return;
     editable = fresh;
     fill(field("object"), fresh.objects.map((o) => o.node));
-    fill(field("lamp"), lamps_of(fresh).map((m) => m.material));
+    fill(field("lamp"), lamps_of(fresh).map((lamp) => lamp.label));
     show_lamp();
     form.hidden = false;
   };
@@ -89,7 +99,10 @@ export function make_edit_panel({ form, on_edited, on_problem }) {
   });
   field("lamp").addEventListener("change", show_lamp);
   field("dim").addEventListener("input", show_dim);
-  field("dim").addEventListener("change", () => send(dim_of(field("lamp").value, Number(field("dim").value))));
+  field("dim").addEventListener("change", () => {
+    const lamp = chosen_lamp();
+    if (lamp) send(dim_of(lamp, Number(field("dim").value)));
+  });
 
   return {
     /** Takes over a job as it is now. */

@@ -20,8 +20,10 @@ EditOutcome apply_to(SequenceState& state, const std::string& camera, const Edit
             const Index piece = index_named(world.pieces, 0, move.node, "piece");
             return move_furniture(state, move.node, motion_of(world, piece, move.shift), context);
         },
-        [&](const LightEdit& light) {
-            return set_emission(state, light.material, light.emission.value_or(Rgb(0)), context);
+        [&](const LightEdit& edited) {
+            const Rgb light = edited.light.value_or(Rgb(0));
+            if (edited.of == LightEdit::Of::lamp) return set_intensity(state, edited.name, light);
+            return set_emission(state, edited.name, light, context);
         },
         [&](const MaterialEdit& material) {
             return set_reflectance(state, material.material, material.reflectance);

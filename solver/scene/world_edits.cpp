@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "solver/base/error.h"
@@ -45,6 +46,27 @@ Index set_emission(World& world, const std::string& material, const Rgb& emissio
     world.materials[edited].emission = emission;
     drop_track(world.material_emission, edited);
     return edited;
+}
+
+std::vector<Index> lamps_named(const World& world, const std::string& name) {
+    std::vector<Index> found;
+    for (Index l = 0; l < world.lights.size(); ++l)
+        if (world.lights[l].light.name == name) found.push_back(l);
+    if (!found.empty()) return found;
+    std::set<std::string> listed;
+    std::string names;
+    for (const PlacedLight& placed : world.lights)
+        if (listed.insert(placed.light.name).second)
+            names += (names.empty() ? "there are: " : ", ") + placed.light.name;
+    throw Error(ErrorKind::not_found, "lamp",
+                "there is no lamp \"" + name + "\"; " + (names.empty() ? "the scene has none" : names));
+}
+
+Index set_intensity(World& world, const std::string& lamp, const Rgb& intensity) {
+    const std::vector<Index> lamps = lamps_named(world, lamp);
+    require_light(intensity, 1e6F, "intensity", "must lie in [0, 1e6) W/sr, of a directional lamp W/m²");
+    for (const Index edited : lamps) world.lights[edited].light.intensity = intensity;
+    return lamps.front();
 }
 
 Index set_reflectance(World& world, const std::string& material, const Rgb& reflectance) {

@@ -14,6 +14,13 @@ namespace afterglow {
 /// What a material emits, W/m²/sr per channel in [0, 1e6), at all times: its track, if any, is dropped.
 Index set_emission(World& world, const std::string& material, const Rgb& emission);
 
+/// The lamps without surface of a name; in a scene one lamp may stand in several places. Errors: not_found.
+std::vector<Index> lamps_named(const World& world, const std::string& name);
+
+/// How strongly all of them shine, W/sr per channel in [0, 1e6), directional ones W/m². Returns the first
+/// one.
+Index set_intensity(World& world, const std::string& lamp, const Rgb& intensity);
+
 /// What share of light a material reflects, each channel in [0, 1), likewise.
 Index set_reflectance(World& world, const std::string& material, const Rgb& reflectance);
 

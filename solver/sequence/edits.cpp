@@ -48,6 +48,12 @@ EditOutcome set_emission(SequenceState& state, const std::string& material, cons
     return {sight / (sight + parts.light->lines_per_patch()), 0, false};
 }
 
+EditOutcome set_intensity(SequenceState& state, const std::string& lamp, const Rgb& intensity) {
+    set_intensity(state.parts().world, lamp, intensity);
+    state.parts().edited = true;
+    return {};
+}
+
 EditOutcome set_reflectance(SequenceState& state, const std::string& material, const Rgb& reflectance) {
     set_reflectance(state.parts().world, material, reflectance);
     state.parts().edited = true;

@@ -28,6 +28,11 @@ struct EditOutcome {
 EditOutcome set_emission(SequenceState& state, const std::string& material, const Rgb& emission,
                          const Context& context);
 
+/// How strongly the lamps without surface of a name shine, W/sr per channel in [0, 1e6), directional ones
+/// W/m², from now on. All lines stay, and light follows: what a lamp can reach does not depend on its
+/// strength.
+EditOutcome set_intensity(SequenceState& state, const std::string& lamp, const Rgb& intensity);
+
 /// What share of light a material reflects, each channel in [0, 1), likewise.
 EditOutcome set_reflectance(SequenceState& state, const std::string& material, const Rgb& reflectance);
 

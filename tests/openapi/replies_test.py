@@ -209,7 +209,8 @@ class EveryOperation(Described):
         address = f"/v1/jobs/{id}/edits"
         editable = self.ask(200, "GET", f"/v1/jobs/{id}/editable").json()
         lamp = next(one for one in editable["materials"] if one["emission_scale"])
-        body = json.dumps({"edits": [{"light": {"material": lamp["material"], "emission_scale": 0.5}}]})
+        body = json.dumps({"edits": [{"light": {"material": lamp["material"], "emission_scale": 0.5}},
+                                     {"light": {"name": lamp["material"], "scale": 0.5}}]})
         self.service.fits(json.loads(body), {"$ref": "#/components/schemas/NewEdits"})
         tag = self.ask(200, "GET", f"/v1/jobs/{id}").headers["etag"]
         self.ask(428, "POST", address, body, JSON)

@@ -14,8 +14,9 @@ using testing::HasSubstr;
 /// Jobs that are edited on the way, by the real programs.
 class Edits : public ServiceTest {
   protected:
-    /// A room with a lamp, a crate and a robot that moves. What the arguments say could also be edited.
-    std::string room(double emission, double crate_x, double crate_reflectance) {
+    /// A room with a lamp, a crate, a robot that moves and, where it has any intensity, a bulb without
+    /// surface. What the arguments say could also be edited.
+    std::string room(double emission, double crate_x, double crate_reflectance, double bulb = 0) {
         const auto node = [](const char* name, std::vector<double> place, client::Json geometry) {
             return client::Json{{"name", name}, {"translation", place}, {"geometry", std::move(geometry)}};
         };
@@ -24,7 +25,7 @@ class Edits : public ServiceTest {
         };
         client::Json lamp = node("panel", {2, 2.9, 2}, {{"quad", {{"size", {1, 1}}}}, {"material", "lamp"}});
         lamp["rotation"] = {1, 0, 0, 180};
-        const client::Json scene = {
+        client::Json scene = {
             {"afterglow", 1},
             {"materials",
              {{{"name", "wall"}, {"reflectance", 0.6}},
@@ -36,6 +37,11 @@ class Edits : public ServiceTest {
               node("robot", {1, 0.75, 3}, box({0.25, 0.5, 0.25}, "wood"))}},
             {"cameras", {{{"name", "camera"}, {"position", {3.5, 1.5, 3.5}}, {"look_at", {1, 0.75, 1}}}}},
             {"tracks", {{{"node", "robot"}, {"translation", {{0, 1, 0.75, 3}, {2, 3, 0.75, 3}}}}}}};
+        if (bulb > 0)
+            scene["lights"] = client::Json::array({client::Json{{"name", "bulb"},
+                                                                {"kind", "point"},
+                                                                {"position", {1, 2, 1}},
+                                                                {"intensity", {bulb, bulb, 0}}}});
         const auto file = folder_.path() / ("room" + std::to_string(++rooms_) + ".json");
         std::ofstream(file) << scene.dump();
         return file.string();
@@ -115,6 +121,19 @@ TEST_F(Edits, ARunningJobShowsWhatANewJobOnTheEditedSceneShows) {
     bool told = false;
     for (const auto& event : all_events(edited)) told = told || event.at("event") == "reused";
     EXPECT_TRUE(told);
+}
+
+TEST_F(Edits, ALampWithoutSurfaceIsDimmedWhileTheJobRuns) {
+    const std::string edited = submit_long(room(2, 1, 0.5, 4));
+    wait_for_frames(edited, 3);
+    edit({"light", edited, "bulb", "--scale", "0.25"});
+    finish(edited, 4);
+    EXPECT_EQ(job(edited).at("reused"), 1) << "no line is traced again";
+    EXPECT_THAT(afterglow({"edit", "show", edited}).out,
+                HasSubstr("lamp      bulb (point) shines 1,1,0 (25 %)"));
+    const std::string fresh = submit_room(room(2, 1, 0.5, 1), "0-3");
+    ASSERT_EQ(afterglow({"watch", fresh}).exit, 0);
+    for (const int frame : {0, 3}) EXPECT_LE(difference(edited, fresh, frame), 4e-3) << frame;
 }
 
 TEST_F(Edits, FurnitureMovedWhileTheJobRunsStandsWhereANewJobHasIt) {

@@ -34,9 +34,16 @@ test("a form left as it is asks for all frames", () => {
 test("edits are sent as the interface has them, and none that change nothing", () => {
   assert.deepEqual(move_of("chair", [0.1, 0, -2]), { move: { node: "chair", translation: [0.1, 0, -2] } });
   assert.equal(move_of("chair", [0, 0, 0]), null);
-  assert.deepEqual(dim_of("lamp", 35), { light: { material: "lamp", emission_scale: 0.35 } });
-  const materials = [{ material: "wall", emission_scale: null }, { material: "lamp", emission_scale: 0 }];
-  assert.deepEqual(lamps_of({ materials }).map((m) => m.material), ["lamp"], "one that is off is still a lamp");
+  assert.deepEqual(dim_of({ kind: "material", name: "lamp" }, 35), { light: { material: "lamp", emission_scale: 0.35 } });
+  assert.deepEqual(dim_of({ kind: "lamp", name: "spot" }, 0), { light: { lamp: "spot", intensity_scale: 0 } });
+});
+
+test("what gives light can be dimmed, and what shares a name is told apart", () => {
+  const materials = [{ material: "wall", emission_scale: null }, { material: "ceiling", emission_scale: 0 }, { material: "a", emission_scale: 1 }];
+  const lamps = [{ lamp: "spot", intensity_scale: 2 }, { lamp: "off", intensity_scale: null }, { lamp: "a", intensity_scale: 1 }];
+  const found = lamps_of({ materials, lamps });
+  assert.deepEqual(found.map((lamp) => lamp.label), ["ceiling", "a (material)", "spot", "a (lamp)"], "one that is dimmed to nothing is still a lamp");
+  assert.deepEqual(found[2], { kind: "lamp", name: "spot", scale: 2, label: "spot" });
 });
 
 test("what an edit kept is said once it is known", () => {

@@ -32,9 +32,11 @@ TEST(EditOptions, EveryKindIsAsTheInterfaceHasIt) {
         edits({"move", "j1", "chair", "--by", "-0.5,0,1e-1", "--turn", "-30"}),
         Json::parse(R"([{"move":{"node":"chair","translation":[-0.5,0.0,0.1],"rotation":[0,1,0,-30.0]}}])"));
     EXPECT_EQ(edits({"light", "j1", "lamp", "--scale", "0"}),
-              Json::parse(R"([{"light":{"material":"lamp","emission_scale":0.0}}])"));
+              Json::parse(R"([{"light":{"name":"lamp","scale":0.0}}])"));
     EXPECT_EQ(edits({"light", "j1", "lamp", "--emission", "3,2,1"}),
               Json::parse(R"([{"light":{"material":"lamp","emission":[3.0,2.0,1.0]}}])"));
+    EXPECT_EQ(edits({"light", "j1", "spot", "--intensity", "3,2,1"}),
+              Json::parse(R"([{"light":{"lamp":"spot","intensity":[3.0,2.0,1.0]}}])"));
     EXPECT_EQ(edits({"material", "j1", "wall", "--reflectance", ".5,.4,.3"}),
               Json::parse(R"([{"material":{"material":"wall","reflectance":[0.5,0.4,0.3]}}])"));
     EXPECT_EQ(edits({"camera", "j1", "--camera", "side"}), Json::parse(R"([{"camera":{"camera":"side"}}])"));
@@ -77,7 +79,10 @@ TEST(EditOptions, WhatIsWrongIsNamed) {
     EXPECT_THAT(complaint({"move", "j1", "chair", "--by", "1,2"}), HasSubstr("--by: \"1,2\""));
     EXPECT_THAT(complaint({"move", "j1", "chair", "--by", "1,2,x"}), HasSubstr("--by"));
     EXPECT_THAT(complaint({"move", "j1", "chair", "--by", "1,2,inf"}), HasSubstr("--by"));
-    EXPECT_THAT(complaint({"light", "j1", "lamp"}), HasSubstr("--scale or --emission"));
+    EXPECT_THAT(complaint({"light", "j1", "lamp"}), HasSubstr("--scale, --emission or --intensity"));
+    EXPECT_THAT(complaint({"light", "j1", "lamp", "--emission", "1,1,1", "--intensity", "1,1,1"}),
+                HasSubstr("--help"));
+    EXPECT_THAT(complaint({"light", "j1", "lamp", "--intensity", "1"}), HasSubstr("--intensity: \"1\""));
     EXPECT_THAT(complaint({"light", "j1", "lamp", "--scale", "1", "--emission", "1,1,1"}),
                 HasSubstr("--help"));
     EXPECT_THAT(complaint({"camera", "j1"}), HasSubstr("--camera"));

@@ -1,6 +1,7 @@
 #include "solver/scene/world_edits.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <gmock/gmock.h>
 
@@ -36,6 +37,34 @@ TEST(WorldEdits, WhatHasNoKeysGoesOnAsBefore) {
         EXPECT_GE(std::abs(glm::dot(moved.at(time).rotation, old.at(time).rotation)), 1 - 1e-6F);
         EXPECT_LE(glm::length(turned.at(time).translation - old.at(time).translation), 1e-6F);
     }
+}
+
+TEST(WorldEdits, AllLampsOfANameGetOneIntensity) {
+    World world;
+    for (const std::string name : {"spot", "bulb", "spot"}) world.lights.emplace_back().light.name = name;
+    EXPECT_EQ(lamps_named(world, "spot"), (std::vector<Index>{0, 2}));
+    EXPECT_EQ(set_intensity(world, "spot", Rgb(3, 2, 1)), 0U);
+    EXPECT_EQ(world.lights[0].light.intensity, Rgb(3, 2, 1));
+    EXPECT_EQ(world.lights[1].light.intensity, Rgb(0));
+    EXPECT_EQ(world.lights[2].light.intensity, Rgb(3, 2, 1));
+}
+
+TEST(WorldEdits, ALampsNameAndIntensityAreChecked) {
+    World world;
+    const auto said = [&](const std::string& lamp, const Rgb& intensity) {
+        try {
+            set_intensity(world, lamp, intensity);
+        } catch (const Error& error) {
+            return error.place() + ": " + error.message();
+        }
+        return std::string("nothing");
+    };
+    EXPECT_EQ(said("x", Rgb(1)), "lamp: there is no lamp \"x\"; the scene has none");
+    for (const std::string name : {"spot", "bulb", "spot"}) world.lights.emplace_back().light.name = name;
+    EXPECT_EQ(said("x", Rgb(1)), "lamp: there is no lamp \"x\"; there are: spot, bulb");
+    for (const float bad : {-1.0F, 1e6F, std::numeric_limits<float>::quiet_NaN()})
+        EXPECT_THAT(said("spot", Rgb(bad)), testing::StartsWith("intensity: must lie in"));
+    EXPECT_EQ(world.lights[0].light.intensity, Rgb(0)) << "nothing changed";
 }
 
 TEST(WorldEdits, APieceTurnsAboutItsOwnMiddle) {

@@ -19,6 +19,23 @@ World room_with_box() {
     return world;
 }
 
+/// The same with three lamps without surface: a bulb, and one spot in two places.
+World room_with_lamps() {
+    World world = room_with_box();
+    const auto add_lamp = [&](const std::string& name, Light::Kind kind, const Vec3& place) {
+        PlacedLight& lamp = world.lights.emplace_back();
+        lamp.light.name = name;
+        lamp.light.kind = kind;
+        lamp.light.intensity = Rgb(2, 1.5F, 1);
+        const Quat downwards = glm::angleAxis(-pi / 2, Vec3(1, 0, 0));
+        lamp.path.keys = {{0, {place, downwards}}};
+    };
+    add_lamp("bulb", Light::Kind::point, Vec3(1, 2.2F, 1));
+    add_lamp("spot", Light::Kind::spot, Vec3(3, 2.5F, 1));
+    add_lamp("spot", Light::Kind::spot, Vec3(3, 2.5F, 4));
+    return world;
+}
+
 SequenceConfig fine() {
     SequenceConfig config;
     config.visibility = Visibility::events;
@@ -56,10 +73,11 @@ void expect_as_new(SequenceState& edited, World scene, int frame) {
 }
 
 struct Edited {
-    World scene = room_with_box();
-    SequenceState state = make_state(scene, fine(), Context(2));
+    World scene;
+    SequenceState state;
 
-    Edited() {
+    explicit Edited(World world = room_with_box())
+        : scene(std::move(world)), state(make_state(scene, fine(), Context(2))) {
         for (const int frame : {0, 1, 2}) testing::picture_of(state, frame);
     }
     void expect_as_new(int frame) { afterglow::expect_as_new(state, scene, frame); }
@@ -106,6 +124,38 @@ TEST(Edits, ALampIsDimmedPutOutAndLitAgain) {
         }
         job.scene.materials[1].emission = Rgb(emission);
         job.expect_as_new(3);
+    }
+}
+
+TEST(Edits, LampsWithoutSurfaceAreDimmedPutOutAndLitAgain) {
+    Edited job(room_with_lamps());
+    for (const float intensity : {0.2F, 0.0F, 5.0F}) {
+        const Rgb warm = intensity * Rgb(1, 0.8F, 0.5F);
+        const EditOutcome outcome = set_intensity(job.state, "spot", warm);
+        EXPECT_EQ(outcome.lines_reused, 1);
+        EXPECT_TRUE(outcome.light_reused);
+        for (const Index spot : {1, 2}) job.scene.lights[spot].light.intensity = warm;
+        job.expect_as_new(3);
+    }
+    set_intensity(job.state, "bulb", Rgb(0));
+    job.scene.lights[0].light.intensity = Rgb(0);
+    job.expect_as_new(12);
+}
+
+TEST(Edits, ALampsLightFollowsByEveryMethod) {
+    World scene = room_with_lamps();
+    for (const Solution solution : {Solution::progressive, Solution::incremental, Solution::active_passive,
+                                    Solution::residual, Solution::in_view}) {
+        SequenceConfig config = fine();
+        config.solution = solution;
+        SequenceState edited = make_state(scene, config, Context(2));
+        testing::picture_of(edited, 0);
+        set_intensity(edited, "bulb", Rgb(0.5F, 3, 6));
+        World changed = scene;
+        changed.lights[0].light.intensity = Rgb(0.5F, 3, 6);
+        SequenceState fresh = make_state(changed, config, Context(2));
+        EXPECT_LE(difference(testing::picture_of(edited, 0), testing::picture_of(fresh, 0)), 4e-3)
+            << "solution " << static_cast<int>(solution);
     }
 }
 
@@ -188,6 +238,34 @@ TEST(Edits, AnyOrderOfThemEndsWhereANewJobStarts) {
     }
 }
 
+TEST(Edits, AnyOrderOfThemAmongLampsEndsWhereANewJobStarts) {
+    std::mt19937 random(11);
+    Edited job(room_with_lamps());
+    for (int round = 0; round < 9; ++round) {
+        const auto value = [&] { return 0.5F * static_cast<float>(random() % 9); };
+        const Rgb light(value(), value(), value());
+        switch (random() % 3) {
+            case 0:
+                set_intensity(job.state, "bulb", light);
+                job.scene.lights[0].light.intensity = light;
+                break;
+            case 1:
+                set_intensity(job.state, "spot", light);
+                for (const Index spot : {1, 2}) job.scene.lights[spot].light.intensity = light;
+                break;
+            default:
+                set_emission(job.state, job.scene.materials[1].name, Rgb(0.1F) + light, Context(2));
+                job.scene.materials[1].emission = Rgb(0.1F) + light;
+                break;
+        }
+        const int frame = static_cast<int>(random() % 30);
+        if (round % 3 == 2)
+            job.expect_as_new(frame);
+        else
+            testing::picture_of(job.state, frame);
+    }
+}
+
 TEST(Edits, BadOnesAreNamedAndChangeNothing) {
     Edited job;
     const auto place_of = [](auto&& edit) {
@@ -201,6 +279,7 @@ TEST(Edits, BadOnesAreNamedAndChangeNothing) {
     EXPECT_EQ(place_of([&] { set_reflectance(job.state, "no such", Rgb(0)); }), "material");
     EXPECT_EQ(place_of([&] { set_reflectance(job.state, "box", Rgb(1)); }), "reflectance");
     EXPECT_EQ(place_of([&] { set_emission(job.state, "box", Rgb(-1), Context(1)); }), "emission");
+    EXPECT_EQ(place_of([&] { set_intensity(job.state, "box", Rgb(1)); }), "lamp");
     EXPECT_EQ(place_of([&] { set_path(job.state, "furniture", 0, Path(), Context(1)); }), "actor");
     const std::string actor = job.scene.bodies[1].name;
     EXPECT_EQ(place_of([&] { set_path(job.state, actor, 0, Path(), Context(1)); }), "path");

@@ -45,11 +45,14 @@ TEST(EditJson, EveryKindIsReadAndReadsAsTheSameAgain) {
         R"({"camera":{"position":[1,1.5,2],"look_at":[0,1,0]}})",
         R"({"path":{"node":"robot","from_s":1.5,"translation":[[0,0,0,0],[2,1,0,0]],"rotation":[[0,0,1,0,0],[2,0,1,0,720]]}})",
         R"({"remove":{"node":"rug"}})",
-        R"({"add":{"node":"crate","translation":[0,0.5,0],"geometry":{"box":{"size":[1,1,1]},"material":"oak"}}})"};
+        R"({"add":{"node":"crate","translation":[0,0.5,0],"geometry":{"box":{"size":[1,1,1]},"material":"oak"}}})",
+        R"({"light":{"lamp":"spot","intensity_scale":0.5}})",
+        R"({"light":{"lamp":"spot","intensity":[3,2,1]}})",
+        R"({"light":{"name":"spot","scale":0.5}})"};
     std::vector<Edit> edits;
     for (const std::string& text : kinds) edits.push_back(edit_of(text));
     EXPECT_EQ(std::get<MoveEdit>(edits[0].what).shift.translation, Vec3(1, 0, -0.5F));
-    EXPECT_EQ(std::get<LightEdit>(edits[1].what).emission_scale, 0.25);
+    EXPECT_EQ(std::get<LightEdit>(edits[1].what).scale, 0.25);
     EXPECT_EQ(std::get<MaterialEdit>(edits[3].what).reflectance, Rgb(0.5F));
     EXPECT_EQ(std::get<CameraEdit>(edits[4].what).camera, "side");
     EXPECT_EQ(std::get<PathEdit>(edits[6].what).from_s, 1.5);
@@ -57,6 +60,10 @@ TEST(EditJson, EveryKindIsReadAndReadsAsTheSameAgain) {
     const auto& added = std::get<AddEdit>(edits[8].what);
     EXPECT_EQ(added.object.triangles.size(), 12U);
     for (const Vec3& position : added.object.positions) EXPECT_GE(position.y, 0) << "its place counts";
+    for (const std::size_t k : {9U, 10U, 11U}) EXPECT_EQ(std::get<LightEdit>(edits[k].what).name, "spot");
+    EXPECT_EQ(std::get<LightEdit>(edits[9].what).of, LightEdit::Of::lamp);
+    EXPECT_EQ(std::get<LightEdit>(edits[10].what).light, Rgb(3, 2, 1));
+    EXPECT_EQ(std::get<LightEdit>(edits[11].what).of, LightEdit::Of::either);
     const auto again = edits_of_sources(sources_of(edits));
     EXPECT_EQ(sources_of(again), sources_of(edits));
 }
@@ -86,6 +93,18 @@ TEST(EditJson, WhatIsWrongIsNamedByItsPointer) {
               "request#/edits/0/add/geometry");
     EXPECT_EQ(place_of_failure(R"({"edits":[{"light":{"material":"a","emission":1,"colour":2}}]})"),
               "request#/edits/0/light/colour");
+    EXPECT_EQ(place_of_failure(R"({"edits":[{"light":{"emission":1}}]})"), "request#/edits/0/light");
+    EXPECT_EQ(place_of_failure(R"({"edits":[{"light":{"lamp":"a"}}]})"), "request#/edits/0/light");
+    EXPECT_EQ(place_of_failure(R"({"edits":[{"light":{"lamp":"a","emission":1}}]})"),
+              "request#/edits/0/light/emission");
+    EXPECT_EQ(place_of_failure(R"({"edits":[{"light":{"lamp":"a","intensity_scale":-1}}]})"),
+              "request#/edits/0/light/intensity_scale");
+    EXPECT_EQ(place_of_failure(R"({"edits":[{"light":{"lamp":"a","material":"a","intensity":1}}]})"),
+              "request#/edits/0/light/material");
+    EXPECT_EQ(place_of_failure(R"({"edits":[{"light":{"name":"a","intensity":1}}]})"),
+              "request#/edits/0/light/intensity");
+    EXPECT_EQ(place_of_failure(R"({"edits":[{"light":{"name":"a","scale":1e7}}]})"),
+              "request#/edits/0/light/scale");
 }
 
 TEST(EditJson, ALampIsScaledFromWhatItIsInTheScene) {
@@ -100,11 +119,87 @@ TEST(EditJson, ALampIsScaledFromWhatItIsInTheScene) {
         EXPECT_EQ(world.materials[0].emission, emitted * static_cast<float>(scale)) << "also after 0";
         // What is kept needs the scene no more.
         const Edit kept = edits_of_sources(sources_of({edit})).front();
-        EXPECT_EQ(std::get<LightEdit>(kept.what).emission, emitted * static_cast<float>(scale));
+        EXPECT_EQ(std::get<LightEdit>(kept.what).light, emitted * static_cast<float>(scale));
     }
     world.materials[0].emission = Rgb(0);
     Edit dark = edit_of(R"({"light":{"material":")" + world.materials[0].name + R"(","emission_scale":2}})");
     EXPECT_THROW(resolve(dark, world), Error);
+}
+
+/// The small world with a spot in two places, a lamp called as its material is, and two others of one name.
+World world_with_lamps() {
+    World world = small_world();
+    for (const auto& [name, intensity] : std::vector<std::pair<std::string, float>>{
+             {"spot", 4}, {"spot", 4}, {world.materials[0].name, 1}, {"pair", 1}, {"pair", 2}, {"off", 0}}) {
+        PlacedLight& placed = world.lights.emplace_back();
+        placed.light.name = name;
+        placed.light.intensity = Rgb(intensity);
+        placed.path.keys = {{0, {}}};
+    }
+    return world;
+}
+
+TEST(EditJson, LampsOfANameAreScaledTogether) {
+    for (const std::string form :
+         {R"("lamp":"spot","intensity_scale":0.5)", R"("name":"spot","scale":0.5)"}) {
+        World world = world_with_lamps();
+        Edit edit = edit_of(R"({"light":{)" + form + "}}");
+        resolve(edit, world);
+        apply(world, edit);
+        EXPECT_EQ(world.lights[0].light.intensity, Rgb(2));
+        EXPECT_EQ(world.lights[1].light.intensity, Rgb(2));
+        EXPECT_EQ(world.lights[2].light.intensity, Rgb(1));
+        EXPECT_EQ(edit.source.dump(),
+                  R"({"light":{"lamp":"spot","intensity_scale":0.5,"intensity":[2.0,2.0,2.0]}})");
+        const Edit kept = edits_of_sources(sources_of({edit})).front();
+        EXPECT_EQ(std::get<LightEdit>(kept.what).light, Rgb(2));
+    }
+}
+
+TEST(EditJson, ANameAloneMeansAMaterialWhereNoLampHasIt) {
+    World world = small_world();
+    Edit edit = edit_of(R"({"light":{"name":")" + world.materials[0].name + R"(","scale":3}})");
+    const Rgb emitted = world.materials[0].emission;
+    resolve(edit, world);
+    apply(world, edit);
+    EXPECT_EQ(world.materials[0].emission, emitted * 3.0F);
+}
+
+TEST(EditJson, WhichLightIsMeantIsNotGuessed) {
+    const World world = world_with_lamps();
+    const std::string both = world.materials[0].name;
+    const auto said = [&](const std::string& light) {
+        try {
+            Edit edit = edit_of(R"({"light":{)" + light + "}}");
+            resolve(edit, world);
+        } catch (const Error& error) {
+            return error.place() + ": " + error.message();
+        }
+        return std::string("nothing");
+    };
+    EXPECT_THAT(said(R"("name":")" + both + R"(","scale":1)"),
+                testing::StartsWith("name: a material that shines and a lamp"));
+    EXPECT_THAT(said(R"("name":"x","scale":1)"),
+                testing::EndsWith("there are: " + both + ", spot, pair, off"));
+    EXPECT_THAT(said(R"("lamp":"x","intensity_scale":1)"),
+                testing::EndsWith("there are: spot, " + both + ", pair, off"));
+    EXPECT_THAT(said(R"("lamp":"pair","intensity_scale":1)"),
+                testing::StartsWith("intensity_scale: lamps of this name"));
+    EXPECT_THAT(said(R"("lamp":"off","intensity_scale":1)"),
+                testing::StartsWith("intensity_scale: this lamp is off"));
+}
+
+TEST(EditJson, LampsAreToldByName) {
+    World edited = world_with_lamps();
+    edited.lights[0].light.kind = Light::Kind::spot;
+    set_intensity(edited, "spot", Rgb(1, 0, 0));
+    const Json lamps = editable_json(edited, world_with_lamps()).at("lamps");
+    ASSERT_EQ(lamps.size(), 4U);
+    EXPECT_EQ(lamps[0].dump(),
+              R"({"lamp":"spot","kind":"spot","intensity":[1.0,0.0,0.0],"intensity_scale":0.25})");
+    EXPECT_EQ(lamps[1].at("intensity_scale"), 1);
+    EXPECT_TRUE(lamps[2].at("intensity_scale").is_null()) << "of two strengths";
+    EXPECT_TRUE(lamps[3].at("intensity_scale").is_null()) << "off";
 }
 
 TEST(EditJson, AnActorIsMovedAlongAllOfItsPath) {

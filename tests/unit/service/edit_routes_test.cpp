@@ -18,6 +18,20 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+/// The triangle that shines, called as one of two lamps beside it.
+Scene scene_with_lamps(std::string_view bytes, const SceneUpload& upload) {
+    Scene scene = fake_scene(bytes, upload);
+    for (const std::string name : {"bulb", "lamp"}) {
+        Light& light = scene.lights.emplace_back();
+        light.name = name;
+        light.intensity = Rgb(4, 2, 0);
+        Node& node = scene.nodes.emplace_back();
+        node.name = name;
+        node.light = static_cast<Index>(scene.lights.size()) - 1;
+    }
+    return scene;
+}
+
 class EditRoutes : public testing::Test {
   protected:
     void SetUp() override { start(); }
@@ -25,7 +39,7 @@ class EditRoutes : public testing::Test {
     void start() {
         service_ =
             std::make_unique<Service>(ServiceConfig{folder_.path(), 1, 4, {}, ServiceConfig::AtStop::keep},
-                                      ServiceParts{fake_scene, solver_.factory()});
+                                      ServiceParts{scene_with_lamps, solver_.factory()});
     }
     void restart() {
         solver_.open();  // a step in hand comes to its end
@@ -137,6 +151,10 @@ TEST_F(EditRoutes, WhatCannotBeDoneIsSaidOfItsFieldAndChangesNothing) {
     };
     refused(R"({"move":{"node":"nothing","translation":[0,0,0]}})", "0/move/node");
     refused(R"({"light":{"material":"x","emission_scale":1}})", "0/light/material");
+    refused(R"({"light":{"lamp":"x","intensity_scale":1}})", "0/light/lamp");
+    refused(R"({"light":{"lamp":"bulb","intensity":1e6}})", "0/light/intensity");
+    refused(R"({"light":{"name":"x","scale":1}})", "0/light/name");
+    refused(R"({"light":{"name":"lamp","scale":1}})", "0/light/name");
     refused(R"({"material":{"material":"x","reflectance":0}})", "0/material/material");
     refused(R"({"camera":{"camera":"x"}})", "0/camera/camera");
     refused(R"({"path":{"node":"triangle","translation":[[0,0,0,0]]}})", "0/path/node");
@@ -256,6 +274,25 @@ TEST_F(EditRoutes, WhatCanBeEditedIsToldAsItNowIs) {
     EXPECT_NEAR(editable.at("objects")[0].at("low")[0].get<double>(), 0.1, 1e-6);
     EXPECT_EQ(editable.at("materials")[0].at("emission_scale"), 0.5);
     EXPECT_EQ(editable.at("cameras"), Json::array({"eye"}));
+}
+
+TEST_F(EditRoutes, ALampIsDimmedByItsName) {
+    solver_.close();
+    const std::string id = submit(R"({"frames":"0-1"})");
+    ASSERT_EQ(edit(id, R"({"light":{"name":"bulb","scale":0.5}})").status, 200);
+    const Json kept = json("/v1/jobs/" + id + "/edits").at("edits")[0].at("edits")[0];
+    EXPECT_EQ(kept,
+              parse_json(R"({"light":{"lamp":"bulb","intensity_scale":0.5,"intensity":[2,1,0]}})", "edit"));
+    const Json lamps = json("/v1/jobs/" + id + "/editable").at("lamps");
+    ASSERT_EQ(lamps.size(), 2U);
+    EXPECT_EQ(lamps[0].at("lamp"), "bulb");
+    EXPECT_EQ(lamps[0].at("kind"), "point");
+    EXPECT_EQ(lamps[0].at("intensity"), Json::array({2, 1, 0}));
+    EXPECT_EQ(lamps[0].at("intensity_scale"), 0.5);
+    EXPECT_EQ(lamps[1].at("intensity_scale"), 1);
+    solver_.open();
+    wait_for_end(id);
+    EXPECT_EQ(job(id).at("frames_done"), 2);
 }
 
 TEST_F(EditRoutes, FramesPerSecondAreThoseAskedForElseTheScenes) {

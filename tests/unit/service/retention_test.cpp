@@ -36,7 +36,7 @@ class RetentionTest : public testing::Test {
     }
     void tidy(const RetentionConfig& config, hours later = hours(0)) {
         const auto now = [later] { return std::chrono::system_clock::now() + later; };
-        Retention(jobs_, frames_, blobs_, folder_.path() / "cache", config, now).tidy();
+        Retention(jobs_, frames_, scenes_, blobs_, folder_.path() / "cache", config, now).tidy();
     }
     bool has_frames(const std::string& id) const {
         const bool told = !jobs_.find(id)->frames_removed;
@@ -52,6 +52,7 @@ class RetentionTest : public testing::Test {
     JobStore jobs_{{}, &table_};
     FrameJournal journal_{database_, [](const FrameJournal::Entry&, const std::exception_ptr&) {}};
     FrameStore frames_{folder_.path() / "jobs", &journal_};
+    SceneStore scenes_{folder_.path() / "uploads", surveys_here(fake_scene), &database_};
     BlobStore blobs_{folder_.path() / "blobs", 1 << 20};
 };
 
@@ -159,12 +160,75 @@ TEST_F(RetentionTest, BlobsGoWithAgeAndSizeLikeTheRest) {
     EXPECT_TRUE(blobs_.has(one));
 }
 
+TEST_F(RetentionTest, UploadsThatNoJobHasGoWithAge) {
+    const auto add_scene = [&](const std::string& bytes) { return scenes_.add(bytes, {}).scene.id; };
+    Job draft;
+    draft.scene = add_scene("used");
+    draft.paths = scenes_.add_paths(R"({"used":1})");
+    const std::string job = jobs_.add(draft).id;
+    jobs_.start(job);
+    jobs_.end(job, JobState::cancelled);
+    const std::string scene = add_scene("unused"), paths = scenes_.add_paths(R"({"unused":1})");
+    RetentionConfig config;
+    config.keep_for = config.keep_uploads_for = hours(24);
+    tidy(config, hours(23));
+    EXPECT_TRUE(scenes_.find(scene));
+    EXPECT_TRUE(scenes_.has_paths(paths));
+    config.keep_uploads_for.reset();
+    tidy(config, hours(25));
+    EXPECT_TRUE(scenes_.find(scene)) << "only where it was asked for";
+    config.keep_uploads_for = hours(24);
+    tidy(config, hours(25));
+    EXPECT_FALSE(scenes_.find(scene));
+    EXPECT_FALSE(scenes_.has_paths(paths));
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "uploads" / scene));
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "uploads" / paths));
+    EXPECT_TRUE(scenes_.find(draft.scene)) << "its job may be tried again";
+    EXPECT_TRUE(scenes_.has_paths(draft.paths));
+    const SceneStore later(folder_.path() / "uploads", surveys_here(fake_scene), &database_);
+    EXPECT_FALSE(later.find(scene));
+    EXPECT_TRUE(later.find(draft.scene));
+
+    EXPECT_EQ(add_scene("unused"), scene) << "it can be uploaded again";
+    EXPECT_TRUE(jobs_.remove(job));
+    tidy(config, hours(25));
+    EXPECT_FALSE(scenes_.find(draft.scene));
+    EXPECT_FALSE(scenes_.has_paths(draft.paths));
+}
+
+TEST_F(RetentionTest, AnUploadThatIsAskedForIsYoungAgain) {
+    const std::string scene = scenes_.add("bytes", {}).scene.id;
+    const auto file = folder_.path() / "uploads" / scene;
+    const auto make_old = [&] {
+        std::filesystem::last_write_time(file, std::filesystem::file_time_type::clock::now() - hours(5));
+    };
+    RetentionConfig config;
+    config.keep_uploads_for = hours(1);
+    make_old();
+    EXPECT_TRUE(scenes_.ask_for(scene));
+    tidy(config);
+    EXPECT_TRUE(scenes_.find(scene)) << "a job is being submitted";
+    make_old();
+    scenes_.add("bytes", {});
+    tidy(config);
+    EXPECT_TRUE(scenes_.find(scene)) << "uploaded again";
+    make_old();
+    const SceneStore::Entry listed = scenes_.list().at(0);
+    EXPECT_TRUE(scenes_.ask_for(scene));
+    scenes_.remove(listed);
+    EXPECT_TRUE(scenes_.find(scene)) << "asked for since it was listed";
+    make_old();
+    tidy(config);
+    EXPECT_FALSE(scenes_.find(scene));
+    EXPECT_FALSE(scenes_.ask_for(scene));
+}
+
 TEST_F(RetentionTest, LooksByItself) {
     const std::string id = job_with(1000);
     RetentionConfig config;
     config.keep_for = hours(1);
     config.interval = std::chrono::milliseconds(1);
-    const Retention retention(jobs_, frames_, blobs_, folder_.path() / "cache", config,
+    const Retention retention(jobs_, frames_, scenes_, blobs_, folder_.path() / "cache", config,
                               [] { return std::chrono::system_clock::now() + hours(2); });
     while (!jobs_.find(id)->frames_removed) std::this_thread::yield();
     while (frames_.bytes_of(id) > 0) std::this_thread::yield();

@@ -26,7 +26,8 @@ TEST(ServeOptions, DefaultsAreThoseOfTheService) {
 TEST(ServeOptions, EveryOptionReachesItsField) {
     const ServeConfig config =
         read({"--listen", "0.0.0.0:0", "--data", "d", "--threads", "3", "--resident-jobs", "2",
-              "--connections", "9", "--access-log", "--keep-frames-for", "7d", "--keep-at-most", "20GB"});
+              "--connections", "9", "--access-log", "--keep-frames-for", "7d", "--keep-at-most", "20GB",
+              "--keep-uploads-for", "30d"});
     EXPECT_EQ(config.address, "0.0.0.0");
     EXPECT_EQ(config.port, 0);
     EXPECT_EQ(config.data_folder, "d");
@@ -35,6 +36,7 @@ TEST(ServeOptions, EveryOptionReachesItsField) {
     EXPECT_EQ(config.max_connections, 9U);
     EXPECT_EQ(config.retention.keep_for, std::chrono::hours(7 * 24));
     EXPECT_EQ(config.retention.keep_at_most, 20'000'000'000U);
+    EXPECT_EQ(config.retention.keep_uploads_for, std::chrono::hours(30 * 24));
     EXPECT_EQ(config.access_log, AccessLog::on);
 }
 
@@ -56,6 +58,8 @@ TEST(ServeOptions, FailuresNameTheOption) {
                                                           {"--listen", "::1:80"},
                                                           {"--listen", "[]:80"},
                                                           {"--data", ""},
+                                                          {"--keep-uploads-for", "9m"},
+                                                          {"--keep-uploads-for", "soon"},
                                                           {"--threads", "0"},
                                                           {"--connections", "many"},
                                                           {"--resident-jobs", "0"}}) {
