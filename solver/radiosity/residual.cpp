@@ -154,7 +154,10 @@ class Pusher {
                 settle_block(b);
             }
         });
-        add_to_whole(state_, problem_, context);
+        if (state_.progress.is_being_confirmed)
+            gather_whole(state_, problem_, context);
+        else
+            add_to_whole(state_, problem_, context);
         std::fill(work_.change.begin(), work_.change.end(), DoubleLanes{});
         std::fill(work_.is_pushed.begin(), work_.is_pushed.end(), std::uint8_t{0});
     }
@@ -291,6 +294,7 @@ Certificate step(ResidualState& state, const ResidualProblem& problem, const Res
             // A frame in which nothing changes finds the bits that this one leaves.
             if (state.whole_sums == ResidualState::WholeSums::added_to) {
                 gather_whole(state, problem, context);
+                state.progress.is_being_confirmed = true;
                 continue;
             }
             const bool is_enough = survey.certificate.error_bound <= config.asked_error;

@@ -71,6 +71,7 @@ struct ResidualState {
     /// How much rounding a row's sums may have gathered since they were computed, relative to them. Where
     /// that comes to matter they are computed afresh; light that nothing reaches keeps every bit.
     std::vector<float> wear;
+    std::vector<float> whole_wear;  ///< likewise, by whole row
     ResidualStatus status = ResidualStatus::running;
 
     /// How the solution at hand gets on. Rounds between surveys, which leave out what actors cover, converge
@@ -79,6 +80,9 @@ struct ResidualState {
         int rounds_allowed = std::numeric_limits<int>::max();             ///< between two surveys
         int rounds_made = 0;                                              ///< since the last survey
         double largest_before = std::numeric_limits<double>::infinity();  ///< residual before them
+        /// It seemed finished once: from then on whole rows are gathered after every survey's rounds, since
+        /// two ways to add could each take back for ever what the other brings.
+        bool is_being_confirmed = false;
     } progress;
 
     /// Room to work in that is kept, since it takes longer to get than to use; means nothing between calls.

@@ -41,6 +41,24 @@ double add(DoubleLanes& sum, const DoubleLanes& light, double wear) {
     return (wear * before + rounding_each * std::max({before, after, largest_of(light)})) / after;
 }
 
+/// What pushes bring a row, few of whose columns were pushed; see Pusher::cover.
+DoubleLanes pushed_to(const FormFactorMatrix& matrix, std::size_t row, const ResidualState::Workspace& work) {
+    DoubleLanes arrived;
+    std::array<std::uint64_t, 256> picked;
+    for (std::uint64_t begin = matrix.row_begin[row]; begin < matrix.row_begin[row + 1];
+         begin += picked.size()) {
+        const std::uint64_t end = std::min(begin + picked.size(), matrix.row_begin[row + 1]);
+        std::size_t count = 0;
+        for (std::uint64_t e = begin; e < end; ++e) {
+            picked[count] = e;
+            count += work.is_pushed[matrix.column[e]];
+        }
+        for (std::size_t p = 0; p < count; ++p)
+            add_light(arrived, matrix.value[picked[p]], work.change[matrix.column[picked[p]]].v);
+    }
+    return arrived;
+}
+
 /// Marks the rows of a layer from `first` on that gather from a column that changed.
 void mark_reached(const LayeredRows& layer, std::size_t first, std::size_t last,
                   std::span<const std::uint8_t> changed, std::span<std::uint8_t> reached) {
@@ -103,6 +121,7 @@ void gather_reached(ResidualState& state, const ResidualProblem& problem, std::s
 
 void gather_whole(ResidualState& state, const ResidualProblem& problem, const Context& context) {
     state.by_whole.resize(problem.matrix.whole_rows.size());
+    state.whole_wear.assign(state.by_whole.size(), 0);
     context.for_chunks(state.by_whole.size(), whole_rows_per_chunk, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k)
             state.by_whole[k] = gather_row(problem.matrix.whole, k, state.radiosity);
@@ -112,23 +131,15 @@ void gather_whole(ResidualState& state, const ResidualProblem& problem, const Co
 
 void add_to_whole(ResidualState& state, const ResidualProblem& problem, const Context& context) {
     const FormFactorMatrix& whole = problem.matrix.whole;
-    const ResidualState::Workspace& work = state.workspace;
     context.for_chunks(state.by_whole.size(), whole_rows_per_chunk, [&](std::size_t first, std::size_t last) {
-        // Few patches are pushed; see Pusher::cover.
-        std::array<std::uint64_t, 256> picked;
-        for (std::size_t k = first; k < last; ++k)
-            for (std::uint64_t begin = whole.row_begin[k]; begin < whole.row_begin[k + 1];
-                 begin += picked.size()) {
-                const std::uint64_t end = std::min(begin + picked.size(), whole.row_begin[k + 1]);
-                std::size_t count = 0;
-                for (std::uint64_t e = begin; e < end; ++e) {
-                    picked[count] = e;
-                    count += work.is_pushed[whole.column[e]];
-                }
-                for (std::size_t p = 0; p < count; ++p)
-                    add_light(state.by_whole[k], whole.value[picked[p]],
-                              work.change[whole.column[picked[p]]].v);
-            }
+        for (std::size_t k = first; k < last; ++k) {
+            const DoubleLanes arrived = pushed_to(whole, k, state.workspace);
+            const double wear = add(state.by_whole[k], arrived, state.whole_wear[k]);
+            state.whole_wear[k] = static_cast<float>(wear);
+            if (wear < most_wear) continue;
+            state.by_whole[k] = gather_row(whole, k, state.radiosity);
+            state.whole_wear[k] = 0;
+        }
     });
     state.whole_sums = ResidualState::WholeSums::added_to;
 }
