@@ -56,7 +56,7 @@ void check_editable(const Job& job) {
 
 /// What is found wrong with an edit is said of the field that it is in.
 Error at_field(const Error& error, const std::string& kind, std::size_t number) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 13> fields{
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 14> fields{
         {{"material", "material"},
          {"piece", "node"},
          {"actor", "node"},
@@ -64,6 +64,7 @@ Error at_field(const Error& error, const std::string& kind, std::size_t number) 
          {"camera", "camera"},
          {"emission", "emission"},
          {"emission_scale", "emission_scale"},
+         {"scale", "scale"},
          {"lamp", "lamp"},
          {"name", "name"},
          {"intensity", "intensity"},

@@ -139,6 +139,21 @@ class ReceivedBody {
     std::vector<FormPart> parts_;
 };
 
+/// Counts who is inside, so that who reads that nobody is knows all they did. (A shared pointer's count does
+/// not say that: it is read without order.)
+class Inside {
+  public:
+    explicit Inside(std::atomic<int>& count) : count_(count) {
+        count_.fetch_add(1, std::memory_order_relaxed);
+    }
+    ~Inside() { count_.fetch_sub(1, std::memory_order_release); }
+    Inside(const Inside&) = delete;
+    Inside& operator=(const Inside&) = delete;
+
+  private:
+    std::atomic<int>& count_;
+};
+
 }  // namespace
 
 class HttpServer::Parts {
@@ -178,7 +193,8 @@ class HttpServer::Parts {
         if (listener_.joinable()) listener_.join();
         // Connections whose provider sleeps on keep these parts alive. Routes do not: they are waited for.
         if (!server_.end_connections(stop_grace))
-            while (routing_.use_count() > 1) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            while (routing_.load(std::memory_order_acquire) > 0)
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
 
     [[nodiscard]] bool is_running() const { return server_.is_running() && !has_ended_; }
@@ -223,7 +239,7 @@ class HttpServer::Parts {
     }
 
     void answer(Request request, httplib::Response& response) const {
-        const StreamToken routing = routing_;
+        const Inside routing(routing_);
         if (!is_admitted(request, response)) return;
         Reply reply = router_.handle(request);
         // Other requests must find a place however many watch.
@@ -242,7 +258,7 @@ class HttpServer::Parts {
 
     void receive_body(const httplib::Request& from, httplib::Response& response,
                       const httplib::ContentReader& reader) const {
-        const StreamToken routing = routing_;
+        const Inside routing(routing_);
         Request request = to_request(from);
         if (!is_admitted(request, response)) return;
         if (has_body(from)) {
@@ -293,7 +309,7 @@ class HttpServer::Parts {
     const Router& router_;
     HttpServerConfig config_;
     StreamToken token_ = std::make_shared<const char>();
-    StreamToken routing_ = std::make_shared<const char>();  ///< held by whoever is in a route or gate
+    mutable std::atomic<int> routing_ = 0;  ///< how many are in a route or gate
     std::atomic<bool> has_stopped_ = false;
     GuardedServer server_;
     std::thread listener_;

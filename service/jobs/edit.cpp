@@ -13,26 +13,25 @@ namespace afterglow {
 
 namespace {
 
-/// What a material emits in the scene as uploaded.
-Rgb emission_in(const World& uploaded, const std::string& material) {
+/// What a material emits in the scene as uploaded. `field`: where its factor was asked for, for errors.
+Rgb emission_in(const World& uploaded, const std::string& material, const char* field) {
     const Rgb emitted = uploaded.materials[index_named(uploaded.materials, 0, material, "material")].emission;
     if (max_channel(emitted) <= 0)
-        throw Error(ErrorKind::invalid_input, "emission_scale",
+        throw Error(ErrorKind::invalid_input, field,
                     "this material emits nothing in the scene; give its emission");
     return emitted;
 }
 
-/// How strongly the lamps of a name shine there.
-Rgb intensity_in(const World& uploaded, const std::string& lamp) {
+/// How strongly the lamps of a name shine there, likewise.
+Rgb intensity_in(const World& uploaded, const std::string& lamp, const char* field) {
     const std::vector<Index> lamps = lamps_named(uploaded, lamp);
     const Rgb intensity = uploaded.lights[lamps.front()].light.intensity;
     for (const Index other : lamps)
         if (uploaded.lights[other].light.intensity != intensity)
-            throw Error(ErrorKind::invalid_input, "intensity_scale",
+            throw Error(ErrorKind::invalid_input, field,
                         "lamps of this name are of several strengths in the scene; give their intensity");
     if (max_channel(intensity) <= 0)
-        throw Error(ErrorKind::invalid_input, "intensity_scale",
-                    "this lamp is off in the scene; give its intensity");
+        throw Error(ErrorKind::invalid_input, field, "this lamp is off in the scene; give its intensity");
     return intensity;
 }
 
@@ -64,15 +63,16 @@ void resolve(Edit& edit, const World& uploaded) {
     auto* light = std::get_if<LightEdit>(&edit.what);
     if (light == nullptr || light->light) return;
     Json& source = edit.source["light"];
-    if (light->of == LightEdit::Of::either) {
-        light->of = find_light(uploaded, light->name);
-        // What is kept says which it is.
-        const bool is_lamp = light->of == LightEdit::Of::lamp;
-        source = {{is_lamp ? "lamp" : "material", light->name},
-                  {is_lamp ? "intensity_scale" : "emission_scale", light->scale.value_or(1)}};
-    }
+    const bool is_by_name = light->of == LightEdit::Of::either;
+    if (is_by_name) light->of = find_light(uploaded, light->name);
     const bool is_lamp = light->of == LightEdit::Of::lamp;
-    const Rgb in_scene = is_lamp ? intensity_in(uploaded, light->name) : emission_in(uploaded, light->name);
+    const char* const scale = is_lamp ? "intensity_scale" : "emission_scale";
+    const char* const field = is_by_name ? "scale" : scale;
+    const Rgb in_scene =
+        is_lamp ? intensity_in(uploaded, light->name, field) : emission_in(uploaded, light->name, field);
+    // What is kept says which it is.
+    if (is_by_name)
+        source = {{is_lamp ? "lamp" : "material", light->name}, {scale, light->scale.value_or(1)}};
     light->light = in_scene * static_cast<float>(light->scale.value_or(1));
     source[is_lamp ? "intensity" : "emission"] = {light->light->r, light->light->g, light->light->b};
 }

@@ -76,9 +76,9 @@ struct JobEdit {
 };
 
 /// Settles what depends on the uploaded scene alone: what a light edit is of, and how bright that becomes.
-/// Errors: not_found; invalid_input: "emission_scale" for a material that emits nothing there,
-/// "intensity_scale" for lamps that are off there or of several strengths, "name" where a material that
-/// shines and a lamp both have it.
+/// Errors: not_found; invalid_input: "name" where a material that shines and a lamp both have it;
+/// "emission_scale" for a material that emits nothing there, "intensity_scale" for lamps that are off there
+/// or of several strengths, both "scale" where only a name was given.
 void resolve(Edit& edit, const World& uploaded);
 
 /// Changes a world as an edit says; a camera edit changes nothing there. Errors: those of world_edits.h and

@@ -187,6 +187,7 @@ TEST(EditJson, WhichLightIsMeantIsNotGuessed) {
                 testing::StartsWith("intensity_scale: lamps of this name"));
     EXPECT_THAT(said(R"("lamp":"off","intensity_scale":1)"),
                 testing::StartsWith("intensity_scale: this lamp is off"));
+    EXPECT_THAT(said(R"("name":"off","scale":1)"), testing::StartsWith("scale: this lamp is off"));
 }
 
 TEST(EditJson, LampsAreToldByName) {

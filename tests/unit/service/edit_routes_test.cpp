@@ -21,10 +21,10 @@ using testing::HasSubstr;
 /// The triangle that shines, called as one of two lamps beside it.
 Scene scene_with_lamps(std::string_view bytes, const SceneUpload& upload) {
     Scene scene = fake_scene(bytes, upload);
-    for (const std::string name : {"bulb", "lamp"}) {
+    for (const std::string name : {"bulb", "lamp", "off"}) {
         Light& light = scene.lights.emplace_back();
         light.name = name;
-        light.intensity = Rgb(4, 2, 0);
+        if (name != "off") light.intensity = Rgb(4, 2, 0);
         Node& node = scene.nodes.emplace_back();
         node.name = name;
         node.light = static_cast<Index>(scene.lights.size()) - 1;
@@ -155,6 +155,7 @@ TEST_F(EditRoutes, WhatCannotBeDoneIsSaidOfItsFieldAndChangesNothing) {
     refused(R"({"light":{"lamp":"bulb","intensity":1e6}})", "0/light/intensity");
     refused(R"({"light":{"name":"x","scale":1}})", "0/light/name");
     refused(R"({"light":{"name":"lamp","scale":1}})", "0/light/name");
+    refused(R"({"light":{"name":"off","scale":1}})", "0/light/scale");
     refused(R"({"material":{"material":"x","reflectance":0}})", "0/material/material");
     refused(R"({"camera":{"camera":"x"}})", "0/camera/camera");
     refused(R"({"path":{"node":"triangle","translation":[[0,0,0,0]]}})", "0/path/node");
@@ -284,7 +285,7 @@ TEST_F(EditRoutes, ALampIsDimmedByItsName) {
     EXPECT_EQ(kept,
               parse_json(R"({"light":{"lamp":"bulb","intensity_scale":0.5,"intensity":[2,1,0]}})", "edit"));
     const Json lamps = json("/v1/jobs/" + id + "/editable").at("lamps");
-    ASSERT_EQ(lamps.size(), 2U);
+    ASSERT_EQ(lamps.size(), 3U);
     EXPECT_EQ(lamps[0].at("lamp"), "bulb");
     EXPECT_EQ(lamps[0].at("kind"), "point");
     EXPECT_EQ(lamps[0].at("intensity"), Json::array({2, 1, 0}));
