@@ -130,7 +130,7 @@ TEST_F(Edits, ALampWithoutSurfaceIsDimmedWhileTheJobRuns) {
     finish(edited, 4);
     EXPECT_EQ(job(edited).at("reused"), 1) << "no line is traced again";
     EXPECT_THAT(afterglow({"edit", "show", edited}).out,
-                HasSubstr("lamp      bulb (point) shines 1,1,0 (25 %)"));
+                HasSubstr("lamp      bulb (point) shines 1.0,1.0,0.0 (25 %)"));
     const std::string fresh = submit_room(room(2, 1, 0.5, 1), "0-3");
     ASSERT_EQ(afterglow({"watch", fresh}).exit, 0);
     for (const int frame : {0, 3}) EXPECT_LE(difference(edited, fresh, frame), 4e-3) << frame;
