@@ -65,7 +65,7 @@ LightEdit read_light(const JsonView& view) {
 MaterialEdit read_material(const JsonView& view) {
     view.allow_only({"material", "reflectance"});
     const JsonView reflectance = view.at("reflectance");
-    const MaterialEdit edit{view.at("material").as_string(), as_rgb(reflectance)};
+    MaterialEdit edit{view.at("material").as_string(), as_rgb(reflectance)};
     if (max_channel(edit.reflectance) >= 1) reflectance.fail("must be below 1");
     return edit;
 }

@@ -145,7 +145,10 @@ std::optional<std::vector<Job>> JobStore::list(const JobQuery& query) const {
     }
     for (JobTable::Entry& entry : table_->page(before, query.state, query.limit)) {
         const auto held = records_.find(entry.job.id);
-        jobs.push_back(held == records_.end() ? std::move(entry.job) : held->second.job);
+        if (held == records_.end())
+            jobs.push_back(std::move(entry.job));
+        else
+            jobs.push_back(held->second.job);
     }
     return jobs;
 }

@@ -17,8 +17,8 @@ struct MethodChoice {
 };
 
 /// Fills in what the settings leave to the scene, so that no more is built than pays: nothing that outlasts a
-/// frame for a single one, no temporal structure where nothing moves, no events ahead for a few frames.
-/// Thread-safety: pure.
+/// frame for a single one, no temporal structure where nothing moves, no events ahead for a few frames,
+/// nothing at all where much of what there is moves and events would not pay. Thread-safety: pure.
 MethodChoice choose_method(const World& world, const SequenceConfig& config);
 
 /// A strategy that knows nothing yet. Keeps a reference to the world. Errors: invalid_input for

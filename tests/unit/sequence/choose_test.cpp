@@ -52,6 +52,25 @@ TEST(ChooseMethod, FinelyMeshedActorsAreNotLookedAheadFor) {
     EXPECT_EQ(chosen(world, expecting(96)), "back-buffer+residual");
 }
 
+TEST(ChooseMethod, WhereMuchOfAllSurfaceMovesNothingIsKept) {
+    std::mt19937 random(1);
+    World world = testing::small_room();
+    // 94 m² of room; a crate has 13.5 m².
+    const auto add_crates = [&](int count) {
+        for (int k = 0; k < count; ++k)
+            testing::add_actor(world, "crate", Vec3(0.75F), 0,
+                               testing::random_path(random, {Vec3(1), Vec3(2)}, 2, testing::Turning::no));
+    };
+    add_crates(2);
+    EXPECT_EQ(chosen(world, expecting(3)), "back-buffer+residual");
+    add_crates(4);
+    EXPECT_EQ(chosen(world, expecting(3)), "full");
+    EXPECT_THAT(choose_method(world, expecting(3)).reason, ::testing::HasSubstr("% of all surface moves"));
+    EXPECT_EQ(chosen(world, expecting(96)), "events");
+    add_crates(90);
+    EXPECT_EQ(chosen(world, expecting(96)), "full");
+}
+
 TEST(ChooseMethod, SaysWhyUnlessAskedByName) {
     const World world = testing::random_world(2, 3, Movements::straight);
     EXPECT_THAT(choose_method(world, expecting(96)).reason, ::testing::HasSubstr("actors: "));
