@@ -48,7 +48,7 @@ struct CountColumns {
 };
 
 /// The entries of a column.
-inline std::span<const std::uint32_t> entries_of(const CountColumns& columns, Index column) {
+inline std::span<const std::uint32_t> column_entries(const CountColumns& columns, Index column) {
     const std::uint64_t begin = columns.column_begin[column];
     return {columns.entry.data() + begin, static_cast<std::size_t>(columns.column_begin[column + 1] - begin)};
 }
@@ -56,7 +56,7 @@ inline std::span<const std::uint32_t> entries_of(const CountColumns& columns, In
 /// Calls `take(row, value)` for each entry of a column, in order.
 template <class Take>
 void for_column(const CountColumns& columns, Index column, const Take& take) {
-    for (const std::uint32_t entry : entries_of(columns, column))
+    for (const std::uint32_t entry : column_entries(columns, column))
         take(entry >> CountColumns::row_shift,
              static_cast<float>(static_cast<int>(entry & CountColumns::most_lines)));
 }

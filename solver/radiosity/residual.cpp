@@ -69,7 +69,7 @@ class Pusher {
             ++progress.rounds_made;
             largest = surveyor_.look_again(context);
         }
-        if (moved) settle(context);
+        settle(context);
         return moved;
     }
 
@@ -127,10 +127,9 @@ class Pusher {
         const auto& of_lamps = problem_.matrix.light_columns;
         for (std::size_t p = 0; p < patches.size(); ++p) {
             if (p + 1 < patches.size())
-                prefetch(afterglow::entries_of(problem_.matrix.sight_columns, patches[p + 1]));
+                prefetch(column_entries(problem_.matrix.sight_columns, patches[p + 1]));
             const Index i = patches[p];
             const DoubleLanes change = take_up(i);
-            if (!is_any(change)) continue;
             work_.is_pushed[i] = 1;
             state_.entries += problem_.matrix.sight_columns.column_begin[i + 1] -
                               problem_.matrix.sight_columns.column_begin[i] + of_lamps.column_begin[i + 1] -
@@ -154,12 +153,9 @@ class Pusher {
                 settle_block(b);
             }
         });
-        if (state_.progress.is_being_confirmed)
-            gather_whole(state_, problem_, context);
-        else
-            add_to_whole(state_, problem_, context);
         std::fill(work_.change.begin(), work_.change.end(), DoubleLanes{});
         std::fill(work_.is_pushed.begin(), work_.is_pushed.end(), std::uint8_t{0});
+        gather_whole(state_, problem_, context);
     }
 
     using BlockSums = std::array<DoubleLanes, block_size>;
@@ -265,7 +261,6 @@ void follow(ResidualState& state, const ResidualProblem& problem, std::span<cons
         apply(changes[part].sight, state.by_sight);
         apply(changes[part].light, state.by_light);
     });
-    state.whole_sums = ResidualState::WholeSums::outdated;
 }
 
 Certificate step(ResidualState& state, const ResidualProblem& problem, const ResidualConfig& config,
@@ -279,7 +274,7 @@ Certificate step(ResidualState& state, const ResidualProblem& problem, const Res
                         " of the light around it; at 1 or more the light would grow without bound");
     if (state.status != ResidualStatus::running) state.progress = {};
     state.status = ResidualStatus::running;
-    if (state.whole_sums == ResidualState::WholeSums::outdated) gather_whole(state, problem, context);
+    gather_whole(state, problem, context);
     Surveyor surveyor(state, problem);
     Pusher pusher(state, problem, surveyor);
     const std::uint64_t pushes_before = state.pushes;
@@ -291,12 +286,6 @@ Certificate step(ResidualState& state, const ResidualProblem& problem, const Res
         const bool may_go_on = state.pushes - pushes_before < config.max_pushes;
         context.check_stop();
         if (is_met || survey.only_rounding || (may_go_on && !pusher.push(survey, config, context))) {
-            // A frame in which nothing changes finds the bits that this one leaves.
-            if (state.whole_sums == ResidualState::WholeSums::added_to) {
-                gather_whole(state, problem, context);
-                state.progress.is_being_confirmed = true;
-                continue;
-            }
             const bool is_enough = survey.certificate.error_bound <= config.asked_error;
             state.status = is_enough ? ResidualStatus::converged : ResidualStatus::exhausted;
             state.left = state.workspace.residual;

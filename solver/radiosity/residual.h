@@ -57,21 +57,15 @@ struct ResidualState {
     std::vector<DoubleLanes> by_sight;  ///< Σ of the sight layer times B, by row, unscaled
     std::vector<DoubleLanes> by_light;  ///< likewise of the light layer
     std::vector<DoubleLanes> by_whole;  ///< by whole row, of this moment
-    enum class WholeSums {
-        outdated,  ///< the rows are others
-        added_to,  ///< right up to the rounding of additions
-        gathered,  ///< as a frame in which nothing changes gathers them again
-    } whole_sums = WholeSums::outdated;
-    std::vector<Rgb> irradiance;  ///< H, W/m², by patch: what is shown is E + ρH
-    std::vector<Lanes> left;      ///< r when a solution was last finished, by patch; none before
-    std::uint64_t pushes = 0;     ///< patches whose radiosity was changed, over all rounds
-    std::uint64_t rounds = 0;     ///< of them, or sweeps
+    std::vector<Rgb> irradiance;        ///< H, W/m², by patch: what is shown is E + ρH
+    std::vector<Lanes> left;            ///< r when a solution was last finished, by patch; none before
+    std::uint64_t pushes = 0;           ///< patches whose radiosity was changed, over all rounds
+    std::uint64_t rounds = 0;           ///< of them, or sweeps
     std::uint64_t sweeps = 0;
     std::uint64_t entries = 0;  ///< of columns that pushes went along, sweeps apart
     /// How much rounding a row's sums may have gathered since they were computed, relative to them. Where
     /// that comes to matter they are computed afresh; light that nothing reaches keeps every bit.
     std::vector<float> wear;
-    std::vector<float> whole_wear;  ///< likewise, by whole row
     ResidualStatus status = ResidualStatus::running;
 
     /// How the solution at hand gets on. Rounds between surveys, which leave out what actors cover, converge
@@ -80,9 +74,6 @@ struct ResidualState {
         int rounds_allowed = std::numeric_limits<int>::max();             ///< between two surveys
         int rounds_made = 0;                                              ///< since the last survey
         double largest_before = std::numeric_limits<double>::infinity();  ///< residual before them
-        /// It seemed finished once: from then on whole rows are gathered after every survey's rounds, since
-        /// two ways to add could each take back for ever what the other brings.
-        bool is_being_confirmed = false;
     } progress;
 
     /// Room to work in that is kept, since it takes longer to get than to use; means nothing between calls.
@@ -108,9 +99,9 @@ ResidualState make_residual_state(const ResidualProblem& problem, const Context&
 ResidualState make_residual_state(const ResidualProblem& problem, std::span<const std::optional<Lanes>> known,
                                   const Context& context);
 
-/// Takes over what changed in the layers since the state's sums were right, and that the whole rows are
-/// others: to be called after each `show`. `problem.matrix` is as that left it, in one part of `changes` all
-/// of a row. Errors: as make_residual_state; then the state is of no more use.
+/// Takes over what changed in the layers since the state's sums were right. `problem.matrix` is as `show`
+/// left it, in one part of `changes` all of a row. Errors: as make_residual_state; then the state is of no
+/// more use.
 void follow(ResidualState& state, const ResidualProblem& problem, std::span<const RowChanges> changes,
             const Context& context);
 

@@ -1,7 +1,6 @@
 #include "solver/radiosity/residual_sums.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace afterglow {
@@ -39,24 +38,6 @@ double add(DoubleLanes& sum, const DoubleLanes& light, double wear) {
     if (!is_any(light)) return wear;
     const double after = largest_of(sum);
     return (wear * before + rounding_each * std::max({before, after, largest_of(light)})) / after;
-}
-
-/// What pushes bring a row, few of whose columns were pushed; see Pusher::cover.
-DoubleLanes pushed_to(const FormFactorMatrix& matrix, std::size_t row, const ResidualState::Workspace& work) {
-    DoubleLanes arrived;
-    std::array<std::uint64_t, 256> picked;
-    for (std::uint64_t begin = matrix.row_begin[row]; begin < matrix.row_begin[row + 1];
-         begin += picked.size()) {
-        const std::uint64_t end = std::min(begin + picked.size(), matrix.row_begin[row + 1]);
-        std::size_t count = 0;
-        for (std::uint64_t e = begin; e < end; ++e) {
-            picked[count] = e;
-            count += work.is_pushed[matrix.column[e]];
-        }
-        for (std::size_t p = 0; p < count; ++p)
-            add_light(arrived, matrix.value[picked[p]], work.change[matrix.column[picked[p]]].v);
-    }
-    return arrived;
 }
 
 /// Marks the rows of a layer from `first` on that gather from a column that changed.
@@ -121,27 +102,10 @@ void gather_reached(ResidualState& state, const ResidualProblem& problem, std::s
 
 void gather_whole(ResidualState& state, const ResidualProblem& problem, const Context& context) {
     state.by_whole.resize(problem.matrix.whole_rows.size());
-    state.whole_wear.assign(state.by_whole.size(), 0);
     context.for_chunks(state.by_whole.size(), whole_rows_per_chunk, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k)
             state.by_whole[k] = gather_row(problem.matrix.whole, k, state.radiosity);
     });
-    state.whole_sums = ResidualState::WholeSums::gathered;
-}
-
-void add_to_whole(ResidualState& state, const ResidualProblem& problem, const Context& context) {
-    const FormFactorMatrix& whole = problem.matrix.whole;
-    context.for_chunks(state.by_whole.size(), whole_rows_per_chunk, [&](std::size_t first, std::size_t last) {
-        for (std::size_t k = first; k < last; ++k) {
-            const DoubleLanes arrived = pushed_to(whole, k, state.workspace);
-            const double wear = add(state.by_whole[k], arrived, state.whole_wear[k]);
-            state.whole_wear[k] = static_cast<float>(wear);
-            if (wear < most_wear) continue;
-            state.by_whole[k] = gather_row(whole, k, state.radiosity);
-            state.whole_wear[k] = 0;
-        }
-    });
-    state.whole_sums = ResidualState::WholeSums::added_to;
 }
 
 }  // namespace afterglow

@@ -29,10 +29,7 @@ void gather_all(ResidualState& state, const ResidualProblem& problem, const Cont
 void gather_reached(ResidualState& state, const ResidualProblem& problem, std::span<const DoubleLanes> change,
                     const Context& context);
 
-/// The sums of the whole rows computed afresh. Same bits for any number of threads. Errors: cancelled.
+/// The sums of the whole rows. Same bits for any number of threads. Errors: cancelled.
 void gather_whole(ResidualState& state, const ResidualProblem& problem, const Context& context);
-
-/// Adds to the whole rows' sums what Workspace::change says of patches that were pushed. Likewise.
-void add_to_whole(ResidualState& state, const ResidualProblem& problem, const Context& context);
 
 }  // namespace afterglow

@@ -10,7 +10,7 @@ namespace {
 class FaceTest {
   public:
     FaceTest(const SearchedBody& body, const RayPacket& rays, LaneHits& hits, SearchWork& work)
-        : body_(body), rays_(rays), hits_(hits), work_(work) {}
+        : body_(body), rays_(rays), axes_(rays), hits_(hits), work_(work) {}
 
     std::uint32_t triangle(Index index, std::uint32_t lanes) const {
         return test(index, lanes, [](std::size_t, float) { return true; });
@@ -30,7 +30,7 @@ class FaceTest {
     std::uint32_t test(Index index, std::uint32_t lanes, const Counts& counts) const {
         work_.line_face_tests += static_cast<std::uint64_t>(std::popcount(lanes));
         alignas(64) std::array<float, 16> distance;
-        meet(rays_, body_.faces[index], distance);
+        meet(rays_, axes_, body_.faces[index], distance);
         std::uint32_t nearer = 0;
         for (std::size_t lane = 0; lane < 16; ++lane)
             nearer |= static_cast<std::uint32_t>(distance[lane] <= hits_.distance[lane]) << lane;
@@ -52,6 +52,7 @@ class FaceTest {
 
     const SearchedBody& body_;
     const RayPacket& rays_;
+    LineAxes axes_;
     LaneHits& hits_;
     SearchWork& work_;
 };

@@ -67,18 +67,38 @@ std::uint32_t lanes_through(const LinePacket& lines, const Box& box) {
     return mask;
 }
 
-void meet(const RayPacket& rays, const LineFace& face, std::array<float, 16>& distance) {
+// Source: Duff et al. 2017, "Building an orthonormal basis, revisited".
+LineAxes::LineAxes(const RayPacket& rays) {
+    for (std::size_t k = 0; k < 16; ++k) {
+        const float x = rays.direction_x[k], y = rays.direction_y[k], z = rays.direction_z[k];
+        const float sign = std::copysign(1.0F, z);
+        const float a = -1 / (sign + z), b = x * y * a;
+        u_x[k] = 1 + sign * x * x * a;
+        u_y[k] = sign * b;
+        u_z[k] = -sign * x;
+        v_x[k] = b;
+        v_y[k] = sign + y * y * a;
+        v_z[k] = -y;
+    }
+}
+
+void meet(const RayPacket& rays, const LineAxes& axes, const LineFace& face,
+          std::array<float, 16>& distance) {
     for (std::size_t k = 0; k < 16; ++k) {
         const float ox = rays.origin_x[k], oy = rays.origin_y[k], oz = rays.origin_z[k];
-        const float dx = rays.direction_x[k], dy = rays.direction_y[k], dz = rays.direction_z[k];
         const float ax = face.a.x - ox, ay = face.a.y - oy, az = face.a.z - oz;
         const float bx = face.b.x - ox, by = face.b.y - oy, bz = face.b.z - oz;
         const float cx = face.c.x - ox, cy = face.c.y - oy, cz = face.c.z - oz;
-        // Exchanging the ends of an edge changes the sign of its volume and nothing else.
-        const float ab = dx * (ay * bz - az * by) + dy * (az * bx - ax * bz) + dz * (ax * by - ay * bx);
-        const float bc = dx * (by * cz - bz * cy) + dy * (bz * cx - bx * cz) + dz * (bx * cy - by * cx);
-        const float ca = dx * (cy * az - cz * ay) + dy * (cz * ax - cx * az) + dz * (cx * ay - cy * ax);
-        const float towards = dx * face.normal.x + dy * face.normal.y + dz * face.normal.z;
+        const float au = axes.u_x[k] * ax + axes.u_y[k] * ay + axes.u_z[k] * az;
+        const float av = axes.v_x[k] * ax + axes.v_y[k] * ay + axes.v_z[k] * az;
+        const float bu = axes.u_x[k] * bx + axes.u_y[k] * by + axes.u_z[k] * bz;
+        const float bv = axes.v_x[k] * bx + axes.v_y[k] * by + axes.v_z[k] * bz;
+        const float cu = axes.u_x[k] * cx + axes.u_y[k] * cy + axes.u_z[k] * cz;
+        const float cv = axes.v_x[k] * cx + axes.v_y[k] * cy + axes.v_z[k] * cz;
+        // Rounding keeps the order of the two products, hence the sign of their difference or zero.
+        const float ab = au * bv - av * bu, bc = bu * cv - bv * cu, ca = cu * av - cv * au;
+        const float towards = rays.direction_x[k] * face.normal.x + rays.direction_y[k] * face.normal.y +
+                              rays.direction_z[k] * face.normal.z;
         const float height = ax * face.normal.x + ay * face.normal.y + az * face.normal.z;
         const float least = std::min(std::min(ab, bc), ca), most = std::max(std::max(ab, bc), ca);
         const float at = height / towards;

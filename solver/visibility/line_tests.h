@@ -31,9 +31,19 @@ struct LineFace {
         : a(first), b(second), c(third), normal(glm::cross(second - first, third - first)) {}
 };
 
+/// Two axes across each line: seen along them the line is a point.
+struct LineAxes {
+    alignas(64) std::array<float, 16> u_x, u_y, u_z, v_x, v_y, v_z;
+
+    explicit LineAxes(const RayPacket& rays);
+};
+
 /// Where each line meets the plane of a triangle, metres; infinite where it misses the triangle or meets it
-/// behind its origin. Lines through an edge that two triangles share meet at least one of them. Source: the
-/// edges' volumes, Plücker; both triangles compute the same bits for a common edge.
-void meet(const RayPacket& rays, const LineFace& face, std::array<float, 16>& distance);
+/// behind its origin. Lines through an edge or a corner that triangles share meet at least one of them: a
+/// corner lies at the same place across the line for all its triangles, and on which side of a point an edge
+/// between two places passes is computed without error, or as zero, which counts as met. Source: Woop,
+/// Benthin and Wald 2013, "Watertight ray/triangle intersection", with axes for each line. `axes` are those
+/// of `rays`.
+void meet(const RayPacket& rays, const LineAxes& axes, const LineFace& face, std::array<float, 16>& distance);
 
 }  // namespace afterglow
