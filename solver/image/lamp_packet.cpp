@@ -36,14 +36,12 @@ void LampPacket::look_at(const DirectLight::Emitter& emitter, Sight& sight) cons
     const float radius = emitter.radius_m, most = max_channel(emitter.emission) * emitter.area_m2;
     // What is not a rectangle shines everywhere: every point is in front of this plane.
     Vec3 plane(0);
-    float behind = -1, near_squared = -1;
+    float behind = -1;
     if (const auto& r = emitter.rectangle) {
         plane = glm::cross(r->edge_u, r->edge_v);
         behind = glm::dot(plane, r->corner);
-        near_squared = RectangleView::near_squared(*r);
     }
-    // Local, so that nothing they are made from can be one of them.
-    alignas(64) std::array<std::int32_t, lanes> near;
+    // Local, so that nothing it is made from can be one of them.
     alignas(64) PacketFloats bounds;
     for (std::size_t lane = 0; lane < lanes; ++lane) {
         const float x = centre.x - points_.x[lane], y = centre.y - points_.y[lane],
@@ -57,13 +55,9 @@ void LampPacket::look_at(const DirectLight::Emitter& emitter, Sight& sight) cons
             plane.x * points_.x[lane] + plane.y * points_.y[lane] + plane.z * points_.z[lane] - behind;
         const float bound = most * cosine / squared;
         bounds[lane] = ((cosine > 0) & (ahead > 0)) ? bound : 0.0F;
-        near[lane] = apart <= near_squared ? 1 : 0;
     }
     sight.bound = bounds;
-    sight.near = 0;
-    for (std::size_t lane = 0; lane < lanes; ++lane)
-        sight.near |= static_cast<std::uint32_t>(near[lane]) << lane;
-    sight.viewed = 0;
+    sight.is_viewed = false;
 }
 
 /// The lamp of each lane, and how far into its part of [0,1) the choice was.
@@ -91,43 +85,19 @@ void LampPacket::choose(const PacketFloats& choice, std::array<Index, 16>& chose
         rest[lane] = std::min(rest[lane] / weight_[lane], 0x1.fffffep-1F);
 }
 
-/// A point of the rectangle, uniform in its area, for the lanes that chose it.
-void LampPacket::place_on_rectangle(const RectangleLight& light, Index chosen_by,
-                                    const std::array<Index, 16>& chosen, const PacketFloats& s,
+void LampPacket::place_on_rectangle(Index emitter, const std::array<Index, 16>& chosen, const PacketFloats& s,
                                     const PacketFloats& t) {
-    const Vec3 corner = light.corner, u = light.edge_u, v = light.edge_v;
-    const Vec3 across = glm::cross(u, v);
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const float x = corner.x + s[lane] * u.x + t[lane] * v.x;
-        const float y = corner.y + s[lane] * u.y + t[lane] * v.y;
-        const float z = corner.z + s[lane] * u.z + t[lane] * v.z;
-        const float back_x = points_.x[lane] - x, back_y = points_.y[lane] - y, back_z = points_.z[lane] - z;
-        const float squared = back_x * back_x + back_y * back_y + back_z * back_z;
-        const float facing = std::max(0.0F, across.x * back_x + across.y * back_y + across.z * back_z);
-        const float solid = facing / (squared * std::sqrt(squared));
-        const bool here = chosen[lane] == chosen_by;
-        places_.x[lane] = here ? x : places_.x[lane];
-        places_.y[lane] = here ? y : places_.y[lane];
-        places_.z[lane] = here ? z : places_.z[lane];
-        places_.solid_angle[lane] = here ? solid : places_.solid_angle[lane];
-    }
+    const RectangleLight& light = *direct_->emitters()[emitter].rectangle;
+    Sight& sight = sights_[emitter];
+    if (!sight.is_viewed) sight.view.look(light, points_);
+    sight.is_viewed = true;
+    sight.view.place(light, points_, chosen, emitter, s, t, places_);
 }
 
-/// Whatever lanes cannot do together.
-void LampPacket::place_one(Index emitter, std::size_t lane, float choice, float s, float t) {
-    const DirectLight::Emitter& e = direct_->emitters()[emitter];
+void LampPacket::place_on_patches(Index emitter, std::size_t lane, float choice, float s, float t) {
     const Vec3 from(points_.x[lane], points_.y[lane], points_.z[lane]);
-    DirectLight::Place place{};
-    if (e.rectangle) {
-        Sight& sight = sights_[emitter];
-        auto& view = sight.view[lane];
-        if (((sight.viewed >> lane) & 1U) == 0) view.emplace(*e.rectangle, from);
-        sight.viewed |= 1U << lane;
-        const RectanglePoint point = view->at(s, t);
-        place = {point.position, point.solid_angle};
-    } else {
-        place = direct_->place_on_patches(e, from, choice, s, t);
-    }
+    const DirectLight::Place place =
+        direct_->place_on_patches(direct_->emitters()[emitter], from, choice, s, t);
     places_.x[lane] = place.position.x;
     places_.y[lane] = place.position.y;
     places_.z[lane] = place.position.z;
@@ -142,14 +112,13 @@ void LampPacket::sample(const PacketFloats& choice, const PacketFloats& s, const
         std::uint32_t here = 0;
         for (std::size_t lane = 0; lane < lanes; ++lane) here |= (out.emitter[lane] == e ? 1U : 0U) << lane;
         if (here == 0) continue;
-        std::uint32_t alone = here;
-        if (const auto& rectangle = direct_->emitters()[e].rectangle) {
-            place_on_rectangle(*rectangle, e, out.emitter, s, t);
-            alone &= sights_[e].near;
+        if (direct_->emitters()[e].rectangle) {
+            place_on_rectangle(e, out.emitter, s, t);
+            continue;
         }
         for (std::size_t lane = 0; lane < lanes; ++lane)
-            if (((alone >> lane) & 1U) != 0 && weight_[lane] > 0)
-                place_one(e, lane, rest[lane], s[lane], t[lane]);
+            if (((here >> lane) & 1U) != 0 && weight_[lane] > 0)
+                place_on_patches(e, lane, rest[lane], s[lane], t[lane]);
     }
     for (std::size_t lane = 0; lane < lanes; ++lane) {
         const float x = places_.x[lane] - points_.x[lane], y = places_.y[lane] - points_.y[lane],

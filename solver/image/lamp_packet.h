@@ -2,15 +2,12 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "solver/image/direct_light.h"
+#include "solver/image/rectangle_packet.h"
 
 namespace afterglow {
-
-/// Sixteen numbers, one a lane.
-using PacketFloats = std::array<float, 16>;
 
 /// A point of the lamps for each of sixteen points, and what it gives if nothing stands between.
 struct LampPacketSamples {
@@ -36,33 +33,25 @@ class LampPacket {
                 LampPacketSamples& out);
 
   private:
-    struct Points {
-        alignas(64) PacketFloats x, y, z, normal_x, normal_y, normal_z;
-    };
     /// One lamp from all points. What a point can be given at most decides how often the lamp is chosen.
     struct Sight {
         alignas(64) PacketFloats bound;
-        std::uint32_t near = 0;                             ///< lanes that see a rectangle near by
-        std::uint32_t viewed = 0;                           ///< of these, which have a view
-        std::array<std::optional<RectangleView>, 16> view;  ///< made when first needed
-    };
-    /// Where on a lamp, and the solid angle it stands for.
-    struct Places {
-        alignas(64) PacketFloats x, y, z, solid_angle;
+        RectanglePacket view;    ///< of a rectangle
+        bool is_viewed = false;  ///< which is first made when needed
     };
 
     void look_at(const DirectLight::Emitter& emitter, Sight& sight) const;
     void choose(const PacketFloats& choice, std::array<Index, 16>& chosen, PacketFloats& rest);
-    void place_on_rectangle(const RectangleLight& light, Index chosen_by, const std::array<Index, 16>& chosen,
-                            const PacketFloats& s, const PacketFloats& t);
-    void place_one(Index emitter, std::size_t lane, float choice, float s, float t);
+    void place_on_rectangle(Index emitter, const std::array<Index, 16>& chosen, const PacketFloats& s,
+                            const PacketFloats& t);
+    void place_on_patches(Index emitter, std::size_t lane, float choice, float s, float t);
 
     const DirectLight* direct_;
-    Points points_{};
+    PointPacket points_{};
     std::vector<Sight> sights_;       // by emitter
     alignas(64) PacketFloats sum_{};  // of bounds
     alignas(64) PacketFloats weight_{};
-    Places places_{};
+    PlacePacket places_{};
 };
 
 }  // namespace afterglow

@@ -1,6 +1,7 @@
 #include "solver/image/tone_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -27,9 +28,36 @@ double luminance(const Rgb& c) {
     return 0.2126 * double{c.r} + 0.7152 * double{c.g} + 0.0722 * double{c.b};
 }
 
-std::uint8_t code(float linear, double gain) {
-    return static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(double{linear} * gain)));
-}
+/// The nearest 8-bit code of a linear value, found by comparing instead of by a power.
+class NearestCode {
+  public:
+    NearestCode() {
+        const auto code_of = [](double linear) { return std::lround(255 * srgb_encoded(linear)); };
+        for (std::size_t code = 1; code < begins_.size(); ++code) {
+            double below = begins_[code - 1], at = 1;
+            while (std::nextafter(below, at) < at) {
+                const double middle = below + (at - below) / 2;
+                (code_of(middle) < static_cast<long>(code) ? below : at) = middle;
+            }
+            begins_[code] = at;
+        }
+        for (std::size_t step = 0; step < first_.size(); ++step)
+            first_[step] = static_cast<std::uint8_t>(code_of(static_cast<double>(step) / steps));
+    }
+
+    [[nodiscard]] std::uint8_t operator()(double linear) const {
+        const double v = std::clamp(linear, 0.0, 1.0);
+        std::uint8_t code = first_[static_cast<std::size_t>(v * steps)];
+        while (code < 255 && v >= begins_[code + 1U]) ++code;
+        return code;
+    }
+
+  private:
+    /// As many that few hold more than one code's beginning.
+    static constexpr int steps = 4096;
+    std::array<double, 256> begins_{};             ///< least value of each code
+    std::array<std::uint8_t, steps + 1> first_{};  ///< code of each step's least value
+};
 
 }  // namespace
 
@@ -59,14 +87,15 @@ float automatic_exposure_ev(const Picture& picture) {
 }
 
 std::vector<std::uint8_t> to_srgb(const Picture& picture, float exposure_ev) {
+    static const NearestCode code;
     const double gain = std::exp2(double{exposure_ev});
     std::vector<std::uint8_t> rgb(picture.pixels.size() * 3);
     for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
         require_finite(picture, i);
         const Rgb& c = picture.pixels[i];
-        rgb[3 * i] = code(c.r, gain);
-        rgb[3 * i + 1] = code(c.g, gain);
-        rgb[3 * i + 2] = code(c.b, gain);
+        rgb[3 * i] = code(double{c.r} * gain);
+        rgb[3 * i + 1] = code(double{c.g} * gain);
+        rgb[3 * i + 2] = code(double{c.b} * gain);
     }
     return rgb;
 }

@@ -49,6 +49,30 @@ TEST(SrgbEncoded, RisesAndJoinsItsTwoPartsWithinTheRoundingOfTheStandard) {
     EXPECT_NEAR(srgb_encoded(0.0031308), srgb_encoded(std::nextafter(0.0031308, 1.0)), 1e-7);
 }
 
+TEST(ToSrgb, GivesTheCodeNearestToTheCurveAlsoBesideWhereCodesBegin) {
+    std::vector<float> values{0, 1, -1, 2, std::numeric_limits<float>::denorm_min()};
+    for (int code = 1; code < 256; ++code) {
+        const double between = (code - 0.5) / 255;
+        const auto linear = static_cast<float>(between <= 0.04045 ? between / 12.92
+                                                                  : std::pow((between + 0.055) / 1.055, 2.4));
+        values.insert(values.end(), {std::nextafter(linear, 0.0F), linear, std::nextafter(linear, 1.0F)});
+    }
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> value(-0.1F, 1.1F);
+    while (values.size() % 3 != 0 || values.size() < 100'000) values.push_back(value(random));
+    Picture picture(static_cast<int>(values.size() / 3), 1);
+    for (std::size_t k = 0; k < values.size(); ++k)
+        picture.pixels[k / 3][static_cast<int>(k % 3)] = values[k];
+
+    for (const float exposure_ev : {0.0F, 0.7F}) {
+        const auto rgb = to_srgb(picture, exposure_ev);
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            const double brightened = double{values[k]} * std::exp2(double{exposure_ev});
+            ASSERT_EQ(rgb[k], std::lround(255 * srgb_encoded(brightened))) << values[k];
+        }
+    }
+}
+
 TEST(ToSrgb, InvertsEveryCode) {
     Picture ramp(256, 1);
     for (int i = 0; i < 256; ++i) {

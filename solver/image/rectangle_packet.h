@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+
+#include "solver/image/rectangle_light.h"
+
+namespace afterglow {
+
+/// Sixteen numbers, one a lane.
+using PacketFloats = std::array<float, 16>;
+
+/// Sixteen points of surfaces with their unit normals, world.
+struct PointPacket {
+    alignas(64) PacketFloats x, y, z, normal_x, normal_y, normal_z;
+};
+
+/// Places on lamps, and the solid angle that each stands for; see RectanglePoint.
+struct PlacePacket {
+    alignas(64) PacketFloats x, y, z, solid_angle;
+};
+
+/// A rectangle as sixteen points see it: `RectangleView` for all at once, in single precision. Where the
+/// rectangle is seen so edge-on that this would tell, points of it are chosen uniformly in area, which is
+/// right, too. One thread at a time.
+class RectanglePacket {
+  public:
+    /// All points are looked from, whatever stands in lanes out of use.
+    void look(const RectangleLight& light, const PointPacket& points);
+    /// The places for (s, t) in [0,1)² of those lanes where `chosen` is `by`; others keep what they have.
+    void place(const RectangleLight& light, const PointPacket& points, const std::array<Index, 16>& chosen,
+               Index by, const PacketFloats& s, const PacketFloats& t, PlacePacket& out) const;
+
+  private:
+    // The rectangle in its own frame around each point, as in Ureña et al.
+    alignas(64) PacketFloats x0_{}, y0_{}, height_{};
+    alignas(64) PacketFloats b0_{}, b1_{}, k_{};
+    alignas(64) PacketFloats solid_angle_{};  // 0: uniform in area
+};
+
+}  // namespace afterglow
