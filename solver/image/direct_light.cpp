@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/image/rectangle_choice.h"
+
 namespace afterglow {
 
 namespace {
@@ -61,17 +63,23 @@ bool DirectLight::covers(const Hit& hit) const {
     return covered_[surface][static_cast<std::size_t>(hit.side)];
 }
 
-float DirectLight::bound(const Emitter& emitter, const Vec3& point, const Vec3& normal) {
+/// How often a lamp is chosen, beside others.
+float DirectLight::weight(const Emitter& emitter, const Vec3& point, const Vec3& normal) {
     const Vec3 to = emitter.centre - point;
     const float squared = std::max(glm::dot(to, to), emitter.radius_m * emitter.radius_m);
     const float distance = std::sqrt(squared);
     // The part of the ball around the lamp that rises above the point's horizon.
     const float cosine = std::min(1.0F, (glm::dot(to, normal) + emitter.radius_m) / distance);
     if (cosine <= 0) return 0;
-    if (const auto& r = emitter.rectangle;
-        r && glm::dot(point - r->corner, glm::cross(r->edge_u, r->edge_v)) <= 0)
-        return 0;
-    return max_channel(emitter.emission) * emitter.area_m2 * cosine / squared;
+    const float bound = emitter.area_m2 * cosine / squared, most = max_channel(emitter.emission);
+    if (!emitter.rectangle) return most * bound;
+    const RectangleLight& light = *emitter.rectangle;
+    const RectangleAxes axes(light);
+    const Vec3 corner = light.corner - point;
+    const RectangleSight sight =
+        sight_of(light, axes, corner.x, corner.y, corner.z, normal.x, normal.y, normal.z);
+    if (sight.height <= 0) return 0;
+    return most * (share_of_bound * bound + sight.expected(axes, corner_gains(sight, axes)));
 }
 
 DirectLight::Place DirectLight::place_on_patches(const Emitter& emitter, const Vec3& from, float choice,
@@ -89,25 +97,25 @@ DirectLight::Place DirectLight::place_on_patches(const Emitter& emitter, const V
 }
 
 LightSample DirectLight::sample(const Vec3& point, const Vec3& normal, float choice, float s, float t) const {
-    std::vector<float> bounds;
+    std::vector<float> weights;
     float sum = 0;
-    for (const Emitter& emitter : emitters_) sum += bounds.emplace_back(bound(emitter, point, normal));
+    for (const Emitter& emitter : emitters_) sum += weights.emplace_back(weight(emitter, point, normal));
     if (!(sum > 0)) return {};
     float left = choice * sum;
     const Emitter* chosen = nullptr;
-    float weight = 0;
+    float of_chosen = 0;
     for (std::size_t e = 0; e < emitters_.size(); ++e) {
-        if (bounds[e] <= 0) continue;
+        if (weights[e] <= 0) continue;
         chosen = &emitters_[e];
-        weight = bounds[e];
-        if (left < weight) break;
-        left -= weight;
+        of_chosen = weights[e];
+        if (left < of_chosen) break;
+        left -= of_chosen;
     }
     // What is left of `choice` within the chosen lamp is uniform again.
-    const float rest = std::min(left / weight, 1.0F);
+    const float rest = std::min(left / of_chosen, 1.0F);
     Place place;
     if (chosen->rectangle) {
-        const RectanglePoint on = point_seen(*chosen->rectangle, point, s, t);
+        const RectanglePoint on = point_for(*chosen->rectangle, point, normal, s, t);
         place = {on.position, on.solid_angle};
     } else {
         place = place_on_patches(*chosen, point, rest, s, t);
@@ -118,7 +126,7 @@ LightSample DirectLight::sample(const Vec3& point, const Vec3& normal, float cho
     if (!(out.distance_m > 0)) return {};
     out.direction = across / out.distance_m;
     const float cosine = std::max(0.0F, glm::dot(out.direction, normal));
-    out.irradiance = chosen->emission * (cosine * place.solid_angle * sum / (pi * weight));
+    out.irradiance = chosen->emission * (cosine * place.solid_angle * sum / (pi * of_chosen));
     return out;
 }
 

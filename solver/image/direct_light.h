@@ -19,8 +19,9 @@ struct LightSample {
 };
 
 /// The lamps of a scene at one time, ready to be sampled from any point: where a picture takes its direct
-/// light from. A lamp is chosen in proportion to a bound of what it can give; a point of it uniformly in
-/// solid angle for rectangles near by, in area for the rest. Thread-safety: const after construction.
+/// light from. A lamp is chosen nearly in proportion to what it gives if nothing stands between; a point of
+/// it likewise where it is a rectangle, uniformly in area for the rest. Thread-safety: const after
+/// construction.
 class DirectLight {
   public:
     /// `emission` is radiosity by patch, W/m²; lamps stand where `placed` has their bodies.
@@ -55,6 +56,9 @@ class DirectLight {
         Pose pose;
     };
     [[nodiscard]] std::span<const Emitter> emitters() const { return emitters_; }
+    /// How much a bound of what a rectangle can give counts beside what it is expected to give, so that it is
+    /// chosen sometimes also where the places looked at give nothing.
+    static constexpr float share_of_bound = 0.02F;
 
     /// A point of an emitter, and the solid angle it stands for.
     struct Place {
@@ -66,7 +70,7 @@ class DirectLight {
                                          float t) const;
 
   private:
-    [[nodiscard]] static float bound(const Emitter& emitter, const Vec3& point, const Vec3& normal);
+    [[nodiscard]] static float weight(const Emitter& emitter, const Vec3& point, const Vec3& normal);
 
     const PatchMesh* mesh_;
     std::vector<Emitter> emitters_;

@@ -26,37 +26,40 @@ void LampPacket::look() {
     sum_.fill(0);
     for (std::size_t e = 0; e < sights_.size(); ++e) {
         look_at(direct_->emitters()[e], sights_[e]);
-        for (std::size_t lane = 0; lane < lanes; ++lane) sum_[lane] += sights_[e].bound[lane];
+        for (std::size_t lane = 0; lane < lanes; ++lane) sum_[lane] += sights_[e].weight[lane];
     }
 }
 
-/// As DirectLight::bound, for all lanes.
+/// As DirectLight::weight, for all lanes.
 void LampPacket::look_at(const DirectLight::Emitter& emitter, Sight& sight) const {
     const Vec3 centre = emitter.centre;
-    const float radius = emitter.radius_m, most = max_channel(emitter.emission) * emitter.area_m2;
-    // What is not a rectangle shines everywhere: every point is in front of this plane.
+    const float radius = emitter.radius_m, area = emitter.area_m2, most = max_channel(emitter.emission);
+    // What is not a rectangle is chosen by its bound alone, and shines everywhere.
+    alignas(64) PacketFloats expected{};
+    float share_of_bound = 1, behind = -1;
     Vec3 plane(0);
-    float behind = -1;
     if (const auto& r = emitter.rectangle) {
+        sight.view.look(*r, points_);
+        expected = sight.view.expected();
+        share_of_bound = DirectLight::share_of_bound;
         plane = glm::cross(r->edge_u, r->edge_v);
         behind = glm::dot(plane, r->corner);
     }
     // Local, so that nothing it is made from can be one of them.
-    alignas(64) PacketFloats bounds;
+    alignas(64) PacketFloats weights;
     for (std::size_t lane = 0; lane < lanes; ++lane) {
         const float x = centre.x - points_.x[lane], y = centre.y - points_.y[lane],
                     z = centre.z - points_.z[lane];
-        const float apart = x * x + y * y + z * z;
-        const float squared = std::max(apart, radius * radius);
+        const float squared = std::max(x * x + y * y + z * z, radius * radius);
         const float along =
             x * points_.normal_x[lane] + y * points_.normal_y[lane] + z * points_.normal_z[lane];
         const float cosine = std::min(1.0F, (along + radius) / std::sqrt(squared));
         const float ahead =
             plane.x * points_.x[lane] + plane.y * points_.y[lane] + plane.z * points_.z[lane] - behind;
-        const float bound = most * cosine / squared;
-        bounds[lane] = ((cosine > 0) & (ahead > 0)) ? bound : 0.0F;
+        const float weight = most * (share_of_bound * (area * cosine / squared) + expected[lane]);
+        weights[lane] = (static_cast<int>(cosine > 0) & static_cast<int>(ahead > 0)) != 0 ? weight : 0.0F;
     }
-    sight.bound = bounds;
+    sight.weight = weights;
     sight.is_viewed = false;
 }
 
@@ -69,9 +72,9 @@ void LampPacket::choose(const PacketFloats& choice, std::array<Index, 16>& chose
     rest.fill(0);
     for (std::size_t lane = 0; lane < lanes; ++lane) left[lane] = choice[lane] * sum_[lane];
     for (std::size_t e = 0; e < sights_.size(); ++e) {
-        const PacketFloats& bound = sights_[e].bound;
+        const PacketFloats& weight = sights_[e].weight;
         for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const float w = bound[lane];
+            const float w = weight[lane];
             const bool take = (done[lane] == 0) & (w > 0);
             chosen[lane] = take ? static_cast<Index>(e) : chosen[lane];
             weight_[lane] = take ? w : weight_[lane];
@@ -89,7 +92,7 @@ void LampPacket::place_on_rectangle(Index emitter, const std::array<Index, 16>& 
                                     const PacketFloats& t) {
     const RectangleLight& light = *direct_->emitters()[emitter].rectangle;
     Sight& sight = sights_[emitter];
-    if (!sight.is_viewed) sight.view.look(light, points_);
+    if (!sight.is_viewed) sight.view.look_closely(light, points_);
     sight.is_viewed = true;
     sight.view.place(light, points_, chosen, emitter, s, t, places_);
 }

@@ -33,11 +33,11 @@ class LampPacket {
                 LampPacketSamples& out);
 
   private:
-    /// One lamp from all points. What a point can be given at most decides how often the lamp is chosen.
+    /// One lamp from all points.
     struct Sight {
-        alignas(64) PacketFloats bound;
-        RectanglePacket view;    ///< of a rectangle
-        bool is_viewed = false;  ///< which is first made when needed
+        alignas(64) PacketFloats weight;  ///< how often it is chosen, beside others
+        RectanglePacket view;             ///< of a rectangle
+        bool is_viewed = false;           ///< closely, which is done when first needed
     };
 
     void look_at(const DirectLight::Emitter& emitter, Sight& sight) const;

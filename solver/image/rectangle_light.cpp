@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solver/image/rectangle_choice.h"
+
 namespace afterglow {
 
 namespace {
@@ -88,6 +90,19 @@ RectanglePoint RectangleView::at(float s, float t) const {
 
 RectanglePoint point_seen(const RectangleLight& light, const Vec3& from, float s, float t) {
     return RectangleView(light, from).at(s, t);
+}
+
+RectanglePoint point_for(const RectangleLight& light, const Vec3& from, const Vec3& normal, float s,
+                         float t) {
+    const RectangleAxes axes(light);
+    const Vec3 to = light.corner - from;
+    const RectangleSight sight = sight_of(light, axes, to.x, to.y, to.z, normal.x, normal.y, normal.z);
+    const RectangleView view(light, from);
+    const BentPlace bent =
+        bend(s, t, view.is_near() ? corner_cosines(sight, axes) : corner_gains(sight, axes));
+    RectanglePoint out = view.at(bent.s, bent.t);
+    out.solid_angle /= bent.density;
+    return out;
 }
 
 }  // namespace afterglow

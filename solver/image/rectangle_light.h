@@ -26,6 +26,10 @@ struct RectanglePoint {
 /// spherical rectangles". Thread-safety: pure.
 RectanglePoint point_seen(const RectangleLight& light, const Vec3& from, float s, float t);
 
+/// Likewise for a point of a surface with a unit normal, nearly in proportion to what each place gives there:
+/// `solid_angle` is less where places lie more densely.
+RectanglePoint point_for(const RectangleLight& light, const Vec3& from, const Vec3& normal, float s, float t);
+
 /// A rectangle as one point sees it: what all points that are chosen from there share. Thread-safety: const
 /// after construction; the rectangle must outlive it.
 class RectangleView {
@@ -36,6 +40,8 @@ class RectangleView {
     [[nodiscard]] static float near_squared(const RectangleLight& light);
     /// As `point_seen`.
     [[nodiscard]] RectanglePoint at(float s, float t) const;
+    /// Whether points are chosen in solid angle.
+    [[nodiscard]] bool is_near() const { return near_.has_value(); }
 
   private:
     /// The rectangle in its own frame around the viewpoint, in double: angles at near corners differ by

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/image/rectangle_choice.h"
+
 namespace afterglow {
 
 namespace {
@@ -54,85 +56,91 @@ float hypotenuse(float a, float b) {
     return std::sqrt(a * a + b * b);
 }
 
-/// A rectangle's axes.
-struct RectangleAxes {
-    Vec3 x_axis, y_axis, normal;
-    float length_u, length_v;
-
-    explicit RectangleAxes(const RectangleLight& light)
-        : length_u(glm::length(light.edge_u)), length_v(glm::length(light.edge_v)) {
-        x_axis = light.edge_u / length_u;
-        y_axis = light.edge_v / length_v;
-        normal = glm::cross(x_axis, y_axis);
-    }
-};
-
 }  // namespace
 
 void RectanglePacket::look(const RectangleLight& light, const PointPacket& points) {
     const RectangleAxes axes(light);
-    const Vec3 to_centre = light.corner + 0.5F * (light.edge_u + light.edge_v);
-    const float near_squared = RectangleView::near_squared(light);
+    // Local, so that nothing it is made from can be part of it.
+    alignas(64) PacketFloats expected;
     for (std::size_t k = 0; k < lanes; ++k) {
-        const float x = light.corner.x - points.x[k], y = light.corner.y - points.y[k],
-                    z = light.corner.z - points.z[k];
-        const float x0 = x * axes.x_axis.x + y * axes.x_axis.y + z * axes.x_axis.z;
-        const float y0 = x * axes.y_axis.x + y * axes.y_axis.y + z * axes.y_axis.z;
-        const float height = -(x * axes.normal.x + y * axes.normal.y + z * axes.normal.z);
+        const RectangleSight sight = sight_of(light, axes, light.corner.x - points.x[k],
+                                              light.corner.y - points.y[k], light.corner.z - points.z[k],
+                                              points.normal_x[k], points.normal_y[k], points.normal_z[k]);
+        expected[k] = sight.expected(axes, corner_gains(sight, axes));
+    }
+    expected_ = expected;
+}
+
+void RectanglePacket::look_closely(const RectangleLight& light, const PointPacket& points) {
+    const RectangleAxes axes(light);
+    const Vec3 centre = light.corner + 0.5F * (light.edge_u + light.edge_v);
+    const float near_squared = RectangleView::near_squared(light);
+    RectanglePacket view;
+    for (std::size_t k = 0; k < lanes; ++k) {
+        const RectangleSight sight = sight_of(light, axes, light.corner.x - points.x[k],
+                                              light.corner.y - points.y[k], light.corner.z - points.z[k],
+                                              points.normal_x[k], points.normal_y[k], points.normal_z[k]);
+        const float x0 = sight.x0, y0 = sight.y0, height = sight.height;
         const float x1 = x0 + axes.length_u, y1 = y0 + axes.length_v;
         // Normals of the four planes through the viewpoint and an edge; only their heights matter.
         const float n0 = -y0 / hypotenuse(height, y0), n1 = x1 / hypotenuse(height, x1);
         const float n2 = y1 / hypotenuse(height, y1), n3 = -x0 / hypotenuse(height, x0);
         const float g2 = arc_cosine(-n2 * n3), g3 = arc_cosine(-n3 * n0);
         const float solid_angle = arc_cosine(-n0 * n1) + arc_cosine(-n1 * n2) + g2 + g3 - 2 * pi;
-        const float cx = to_centre.x - points.x[k], cy = to_centre.y - points.y[k],
-                    cz = to_centre.z - points.z[k];
+        const float cx = centre.x - points.x[k], cy = centre.y - points.y[k], cz = centre.z - points.z[k];
         const bool near =
             (static_cast<int>(cx * cx + cy * cy + cz * cz <= near_squared) & static_cast<int>(height > 0) &
              static_cast<int>(solid_angle > least_solid_angle)) != 0;
-        x0_[k] = x0;
-        y0_[k] = y0;
-        height_[k] = height;
-        b0_[k] = n0;
-        b1_[k] = n2;
-        k_[k] = 2 * pi - g2 - g3;
-        solid_angle_[k] = near ? solid_angle : 0.0F;
+        const CornerWeights cosines = corner_cosines(sight, axes), gains = corner_gains(sight, axes);
+        view.x0_[k] = x0;
+        view.y0_[k] = y0;
+        view.height_[k] = height;
+        view.b0_[k] = n0;
+        view.b1_[k] = n2;
+        view.k_[k] = 2 * pi - g2 - g3;
+        view.solid_angle_[k] = near ? solid_angle : 0.0F;
+        view.w00_[k] = near ? cosines.w00 : gains.w00;
+        view.w10_[k] = near ? cosines.w10 : gains.w10;
+        view.w01_[k] = near ? cosines.w01 : gains.w01;
+        view.w11_[k] = near ? cosines.w11 : gains.w11;
     }
+    view.expected_ = expected_;
+    *this = view;
 }
 
 void RectanglePacket::place(const RectangleLight& light, const PointPacket& points,
                             const std::array<Index, 16>& chosen, Index by, const PacketFloats& s,
                             const PacketFloats& t, PlacePacket& out) const {
     const RectangleAxes axes(light);
-    const float area = axes.length_u * axes.length_v;
     // Local, so that nothing it is made from can be part of it.
     PlacePacket place;
     for (std::size_t k = 0; k < lanes; ++k) {
         const float x0 = x0_[k], y0 = y0_[k], height = height_[k], b0 = b0_[k];
         const float x1 = x0 + axes.length_u, y1 = y0 + axes.length_v;
         const bool near = solid_angle_[k] > 0;
-        const auto [sine, cosine] = sine_and_cosine(s[k] * solid_angle_[k] + k_[k]);
+        const BentPlace bent = bend(s[k], t[k], {w00_[k], w10_[k], w01_[k], w11_[k]});
+        const auto [sine, cosine] = sine_and_cosine(bent.s * solid_angle_[k] + k_[k]);
         const float f = (cosine * b0 - b1_[k]) / sine;
         const float cu = std::min(1.0F, 1 / hypotenuse(f, b0));
         const float across = cu * height / std::sqrt(std::max(1e-30F, 1 - cu * cu));
         const float near_x = std::min(std::max(f < 0 ? -across : across, x0), x1);
         const float d = hypotenuse(near_x, height);
         const float h0 = y0 / hypotenuse(d, y0), h1 = y1 / hypotenuse(d, y1);
-        const float h = h0 + t[k] * (h1 - h0);
+        const float h = h0 + bent.t * (h1 - h0);
         const float near_y = std::min(std::max(h * d / std::sqrt(std::max(1e-30F, 1 - h * h)), y0), y1);
         // In the rectangle's frame from its corner.
-        const float u = near ? near_x - x0 : s[k] * axes.length_u;
-        const float v = near ? near_y - y0 : t[k] * axes.length_v;
+        const float u = near ? near_x - x0 : bent.s * axes.length_u;
+        const float v = near ? near_y - y0 : bent.t * axes.length_v;
         const float x = light.corner.x + u * axes.x_axis.x + v * axes.y_axis.x;
         const float y = light.corner.y + u * axes.x_axis.y + v * axes.y_axis.y;
         const float z = light.corner.z + u * axes.x_axis.z + v * axes.y_axis.z;
         const float back_x = points.x[k] - x, back_y = points.y[k] - y, back_z = points.z[k] - z;
         const float squared = back_x * back_x + back_y * back_y + back_z * back_z;
-        const float by_area = area * std::max(0.0F, height) / (squared * std::sqrt(squared));
+        const float by_area = axes.area_m2() * std::max(0.0F, height) / (squared * std::sqrt(squared));
         place.x[k] = x;
         place.y[k] = y;
         place.z[k] = z;
-        place.solid_angle[k] = near ? solid_angle_[k] : by_area;
+        place.solid_angle[k] = (near ? solid_angle_[k] : by_area) / bent.density;
     }
     for (std::size_t k = 0; k < lanes; ++k) {
         const bool here = chosen[k] == by;
