@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "service/base/console.h"
+#include "service/commands/frame_writer.h"
 #include "service/commands/report.h"
 #include "solver/base/file.h"
-#include "solver/image/frame_files.h"
 #include "solver/sequence/sequence.h"
 
 namespace afterglow {
@@ -54,8 +54,9 @@ std::string finished_line(const FrameStatistics& frame, const FrameRange& range)
     return line;
 }
 
-/// One frame, solved and written. The static pass runs within the first frame but is not counted as its time.
-FrameStatistics render_frame(SequenceState& state, int frame, const fs::path& out, const Context& context) {
+/// One frame, solved and given to the writer. The static pass runs within the first frame but is not counted
+/// as its time; having to wait for the files of the frame before is.
+FrameStatistics render_frame(SequenceState& state, int frame, FrameWriter& writer, const Context& context) {
     const auto begin = Clock::now();
     const Milliseconds outside_before = state.statistics().outside_frames();
     Revision final_picture;
@@ -63,7 +64,7 @@ FrameStatistics render_frame(SequenceState& state, int frame, const fs::path& ou
         if (revision.final) final_picture = revision;
     };
     FrameStatistics statistics = step(state, frame, keep_final, context);
-    write_frame(out, frame, final_picture.radiance, final_picture.srgb);
+    writer.begin(std::move(final_picture));
     statistics.total = Clock::now() - begin - (state.statistics().outside_frames() - outside_before);
     return statistics;
 }
@@ -93,16 +94,20 @@ void render_command(const RenderOptions& options, const std::stop_token& stop, C
     report.static_pass = Clock::now() - loaded;
     if (const SequenceStatistics& chosen = state.statistics(); !chosen.method_reason.empty())
         console.line("method " + chosen.method + ": " + chosen.method_reason);
+    FrameWriter writer(options.out);
     std::size_t warnings_shown = 0;
     for (int frame = range.first; frame <= range.last; ++frame) {
         subject = "frame " + std::to_string(frame);
         const double done = frame - range.first + 1;
         const Context part = context.part(done / steps, (done + 1) / steps);
-        report.frames.push_back(render_frame(state, frame, options.out, part));
+        report.frames.push_back(render_frame(state, frame, writer, part));
         for (; warnings_shown < state.warnings().size(); ++warnings_shown)
             console.warning(state.warnings()[warnings_shown]);
-        console.line(finished_line(report.frames.back(), range));
+        // The files of the frame before are there now.
+        if (frame > range.first) console.line(finished_line(report.frames.end()[-2], range));
     }
+    writer.finish();
+    console.line(finished_line(report.frames.back(), range));
 
     report.static_pass += state.statistics().static_pass;
     report.sequence = state.statistics();
