@@ -9,7 +9,7 @@ namespace afterglow {
 
 namespace {
 
-constexpr std::size_t tiles_per_chunk = 16;
+constexpr std::size_t tiles_per_chunk = 48;
 
 /// Of noisy pixels besides those of every pixel.
 std::size_t further_count(const PictureConfig& config) {
@@ -83,7 +83,8 @@ class TileUpdater {
         for (const ShadowRegion& region : changes_.shadows) actors_.shadows.push_back(&region);
     }
 
-    /// Whether what any sample of the tile gives may be another; most tiles only have other light from patches.
+    /// Whether what any sample of the tile gives may be another; most tiles only have other light from
+    /// patches.
     [[nodiscard]] bool may_touch_samples() const { return look_at_all_ || !changed_shadows_.empty(); }
     /// Whether what a sample gives may be another, of those that have been looked at.
     [[nodiscard]] bool is_touched(const KeptSample& sample) const {

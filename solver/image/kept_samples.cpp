@@ -53,7 +53,7 @@ SampleLight SampleUpdater::light(const KeptTile& tile, const KeptSample& sample)
                 std::span(tile.weights).subspan(sample.first_weight, sample.weights)};
     const ActorPoint& point = actor_points_[sample.on_actor];
     return {point.seen.emitted, point.seen.reflectance, point.direct, point.seen.surface,
-            std::span(point.patches).first(point.seen.stencil.count)};
+            point.seen.stencil.patches()};
 }
 
 void SampleUpdater::update(KeptTile& tile, const TileActors& actors, std::span<const SampleTask> tasks) {
@@ -100,17 +100,17 @@ void SampleUpdater::meet(KeptTile& tile, const TileActors& actors, std::span<con
 
 /// The background of samples that do not know it yet.
 void SampleUpdater::meet_furniture(std::span<const SampleTask> tasks, const RayPacket& rays) {
-    RayPacket unknown = rays;
-    std::size_t count = 0;
-    for (std::size_t lane = 0; lane < tasks.size(); ++lane) {
-        const bool is_new = tasks[lane].sample->known == KeptSample::Known::nothing;
-        if (!is_new) unknown.far[lane] = 0;
-        count += is_new ? 1 : 0;
-    }
+    const auto is_new = [](const SampleTask& task) {
+        return task.sample->known == KeptSample::Known::nothing;
+    };
+    const auto count = std::count_if(tasks.begin(), tasks.end(), is_new);
     if (count == 0) return;
+    RayPacket unknown = rays;
+    for (std::size_t lane = 0; lane < tasks.size(); ++lane)
+        if (!is_new(tasks[lane])) unknown.far[lane] = 0;
     HitPacket hits{};
     lit_.caster->nearest(unknown, Scope::static_geometry, hits);
-    rays_traced_ += count;
+    rays_traced_ += static_cast<std::uint64_t>(count);
     for (std::size_t lane = 0; lane < tasks.size(); ++lane) {
         KeptSample& sample = *tasks[lane].sample;
         if (sample.known != KeptSample::Known::nothing) continue;
@@ -134,8 +134,8 @@ void SampleUpdater::look_at_furniture(KeptTile& tile, const TileActors& actors, 
     sample.reflectance = seen.reflectance;
     sample.first_weight = static_cast<std::uint32_t>(tile.weights.size());
     sample.weights = static_cast<std::uint8_t>(seen.stencil.count);
-    for (std::size_t k = 0; k < seen.stencil.count; ++k)
-        tile.weights.push_back({seen.stencil.patch[k], seen.stencil.weight[k]});
+    const auto weights = seen.stencil.patches();
+    tile.weights.insert(tile.weights.end(), weights.begin(), weights.end());
     if (!seen.takes_light()) return;
     sample.position = seen.position;
     tile.positions.add(seen.position);
@@ -155,10 +155,7 @@ void SampleUpdater::recall(const TileActors& actors, const SampleTask& task) {
 
 void SampleUpdater::look_at_actor(const SampleTask& task, const Ray& ray, const Hit& hit) {
     task.sample->on_actor = static_cast<Index>(actor_points_.size());
-    ActorPoint& point = actor_points_.emplace_back();
-    point.seen = look_at(lit_, ray, hit);
-    for (std::size_t k = 0; k < point.seen.stencil.count; ++k)
-        point.patches[k] = {point.seen.stencil.patch[k], point.seen.stencil.weight[k]};
+    const ActorPoint& point = actor_points_.emplace_back(ActorPoint{look_at(lit_, ray, hit)});
     if (point.seen.takes_light()) add(on_actors_, {task, point.seen.position, point.seen.normal, true});
 }
 

@@ -116,7 +116,6 @@ class SampleUpdater {
     /// What a sample meets on an actor.
     struct ActorPoint {
         SeenPoint seen;
-        std::array<PatchWeight, Stencil::most> patches;
         Rgb direct{0};
     };
     /// Points that wait until sixteen can be traced together, all of one kind.

@@ -75,11 +75,7 @@ class PacketRenderer {
 
     void add_to(PixelSum& sum, std::size_t lane) const {
         const SeenPoint& seen = seen_[lane];
-        std::array<PatchWeight, Stencil::most> patches;
-        for (std::size_t k = 0; k < seen.stencil.count; ++k)
-            patches[k] = {seen.stencil.patch[k], seen.stencil.weight[k]};
-        sum.add({seen.emitted, seen.reflectance, direct_[lane], seen.surface,
-                 std::span(patches).first(seen.stencil.count)},
+        sum.add({seen.emitted, seen.reflectance, direct_[lane], seen.surface, seen.stencil.patches()},
                 lit_.confidence);
     }
 

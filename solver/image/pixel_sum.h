@@ -4,15 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "solver/base/math.h"
+#include "solver/mesh/interpolation.h"
 
 namespace afterglow {
-
-/// A patch and its share of what is interpolated at a point.
-struct PatchWeight {
-    Index patch = no_index;
-    float weight = 0;
-};
 
 /// A patch and by how much its irradiance is seen: radiance, W/m²/sr, per W/m².
 struct PatchShare {

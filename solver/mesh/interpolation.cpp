@@ -30,9 +30,9 @@ void add_cluster_neighbours(const PatchMesh& mesh, Index body, const Adjacency& 
 }
 
 void normalise(Stencil& stencil) {
-    const float sum = std::accumulate(
-        stencil.weight.begin(), stencil.weight.begin() + static_cast<std::ptrdiff_t>(stencil.count), 0.0F);
-    for (std::size_t k = 0; k < stencil.count; ++k) stencil.weight[k] /= sum;
+    float sum = 0;
+    for (const PatchWeight& entry : stencil.patches()) sum += entry.weight;
+    for (std::size_t k = 0; k < stencil.count; ++k) stencil.entry[k].weight /= sum;
 }
 
 }  // namespace
@@ -62,9 +62,9 @@ Stencil Interpolation::at(Index body, Index triangle, Side side, const Vec3& pos
     Stencil stencil;
     if (grid.cells_u > 0) {
         if (const CellTree& tree = mesh_->trees[surface][which]; !tree.empty())
-            stencil = on_grid(tree, grid.cell_at(position));
+            add_on_grid(tree, grid.cell_at(position), stencil);
     } else if (const Index patch = mesh_->patch_of_triangle[body][which][triangle]; patch != no_index) {
-        stencil = on_clusters(patch, position);
+        add_on_clusters(patch, position, stencil);
     }
     if (stencil.count == 0) {
         const Index patch = mesh_->patch_at(body, triangle, side, position);
@@ -73,27 +73,24 @@ Stencil Interpolation::at(Index body, Index triangle, Side side, const Vec3& pos
     return stencil;
 }
 
-Stencil Interpolation::on_grid(const CellTree& tree, const Vec2& at) {
+void Interpolation::add_on_grid(const CellTree& tree, const Vec2& at, Stencil& stencil) {
     const Vec2 end(tree.cells_u, tree.cells_v);
     const Vec2 place = glm::clamp(at, Vec2(0), end);
     const float reach = 0.5F * tree.leaf_at(place).size;
-    Stencil stencil;
     tree.for_overlaps(place - reach, place + reach, [&](Index patch, float area, const Vec2& centre) {
         if (!tree.is_divided_between(place, centre)) stencil.add(patch, area);
     });
     if (stencil.count > 0) normalise(stencil);
-    return stencil;
 }
 
-Stencil Interpolation::on_clusters(Index patch, const Vec3& position) const {
+void Interpolation::add_on_clusters(Index patch, const Vec3& position, Stencil& stencil) const {
     // The kernel reaches as far as the farthest neighbour's centre, where its weight falls to zero.
     float reach = 0;
     for (std::size_t k = first_neighbour_[patch]; k < first_neighbour_[patch + 1]; ++k)
         reach = std::max(reach, glm::length(mesh_->centre[neighbours_[k]] - mesh_->centre[patch]));
-    Stencil stencil;
     if (reach <= 0) {
         stencil.add(patch, 1);
-        return stencil;
+        return;
     }
     const auto add = [&](Index p) {
         const Vec3 d = position - mesh_->centre[p];
@@ -103,16 +100,15 @@ Stencil Interpolation::on_clusters(Index patch, const Vec3& position) const {
     add(patch);
     for (std::size_t k = first_neighbour_[patch]; k < first_neighbour_[patch + 1]; ++k) add(neighbours_[k]);
     normalise(stencil);
-    return stencil;
 }
 
 Rgb Interpolation::value(const Stencil& stencil, std::span<const Rgb> values,
                          std::span<const float> confidence) {
     Rgb sum(0);
     float weight = 0;
-    for (std::size_t k = 0; k < stencil.count; ++k) {
-        const float w = stencil.weight[k] * confidence[stencil.patch[k]];
-        sum += w * values[stencil.patch[k]];
+    for (const PatchWeight& entry : stencil.patches()) {
+        const float w = entry.weight * confidence[entry.patch];
+        sum += w * values[entry.patch];
         weight += w;
     }
     return weight > 0 ? sum / weight : Rgb(0);

@@ -8,18 +8,23 @@
 
 namespace afterglow {
 
+/// A patch and its share of what is interpolated at a point.
+struct PatchWeight {
+    Index patch;
+    float weight;
+};
+
 /// The patches whose values make up the value at a point, and their weights (sum 1, all ≥ 0).
 struct Stencil {
     static constexpr std::size_t most = 24;
-    std::array<Index, most> patch{};
-    std::array<float, most> weight{};
     std::size_t count = 0;
+    std::array<PatchWeight, most>
+        entry;  ///< the first `count`; to clear the others would take longer than use
 
-    void add(Index p, float w) {
-        if (w <= 0 || count == most) return;
-        patch[count] = p;
-        weight[count++] = w;
+    void add(Index patch, float weight) {
+        if (weight > 0 && count < most) entry[count++] = {patch, weight};
     }
+    [[nodiscard]] std::span<const PatchWeight> patches() const { return std::span(entry).first(count); }
 };
 
 /// Smooth values from patch values: on flat surfaces the mean over a window as large as the cell at the
@@ -39,8 +44,8 @@ class Interpolation {
                                    std::span<const float> confidence);
 
   private:
-    [[nodiscard]] static Stencil on_grid(const CellTree& tree, const Vec2& at);
-    [[nodiscard]] Stencil on_clusters(Index patch, const Vec3& position) const;
+    static void add_on_grid(const CellTree& tree, const Vec2& at, Stencil& stencil);
+    void add_on_clusters(Index patch, const Vec3& position, Stencil& stencil) const;
 
     const PatchMesh* mesh_;
     std::vector<std::size_t> first_neighbour_;  // by patch; empty ranges on flat surfaces

@@ -34,7 +34,7 @@ KeptView look_ahead(const SequenceState::Parts& parts, const FormFactorMatrix& r
             const Vec3 at = ray.origin + hit.distance * ray.direction;
             const Stencil stencil = parts.interpolation->at(
                 hit.body, hit.triangle, hit.side, glm::conjugate(pose.rotation) * (at - pose.translation));
-            for (std::size_t k = 0; k < stencil.count; ++k) view.seen[view.rows.group[stencil.patch[k]]] = 1;
+            for (const PatchWeight& entry : stencil.patches()) view.seen[view.rows.group[entry.patch]] = 1;
         });
     }
     return view;

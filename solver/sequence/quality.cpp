@@ -18,7 +18,7 @@ QualityLevel level_for(Quality quality) {
             level.probes.paths_per_sample = 2;
             break;
         case Quality::preview:
-            level.picture = {4, 16, 2, 0.05F};
+            level.picture = {4, 16, 2, 0.07F};
             level.picture_tolerance = 0.0025F;
             break;
         case Quality::final:

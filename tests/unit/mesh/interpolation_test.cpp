@@ -56,9 +56,9 @@ TEST(Interpolation, WeightsAreAPartitionOfUnityEverywhere) {
             const Stencil stencil = interpolation.at(furniture, t, Side::front, body.positions[v]);
             ASSERT_GT(stencil.count, 0U);
             float sum = 0;
-            for (std::size_t k = 0; k < stencil.count; ++k) {
-                EXPECT_GE(stencil.weight[k], 0);
-                sum += stencil.weight[k];
+            for (const PatchWeight& entry : stencil.patches()) {
+                EXPECT_GE(entry.weight, 0);
+                sum += entry.weight;
             }
             EXPECT_NEAR(sum, 1, 1e-5);
         }

@@ -143,8 +143,8 @@ TEST(SplitMesh, InterpolationStaysOnItsSide) {
             const Vec3 at = floor.at(some(random), some(random));
             const Stencil stencil = interpolation.at(furniture, 0, Side::front, at);
             EXPECT_LT(stencil.count, Stencil::most) << "some neighbours may have been left out";
-            for (std::size_t n = 0; n < stencil.count; ++n)
-                ASSERT_EQ(floor.sides_of(mesh.centre[stencil.patch[n]]), floor.sides_of(at)) << "floor " << k;
+            for (const PatchWeight& entry : stencil.patches())
+                ASSERT_EQ(floor.sides_of(mesh.centre[entry.patch]), floor.sides_of(at)) << "floor " << k;
             answered += stencil.count > 0 ? 1 : 0;
         }
     }
@@ -170,8 +170,8 @@ TEST(SplitMesh, AScreenThatEndsMidFloorIsSeenPastItsEnd) {
     const Interpolation interpolation(floor.world, mesh);
     const auto reaches_across = [&](float v) {
         const Stencil stencil = interpolation.at(furniture, 0, Side::front, floor.at(0.5F, v));
-        for (std::size_t n = 0; n < stencil.count; ++n)
-            if (glm::dot(mesh.centre[stencil.patch[n]] - floor.at(0.5125F, 0), floor.x) > 0) return true;
+        for (const PatchWeight& entry : stencil.patches())
+            if (glm::dot(mesh.centre[entry.patch] - floor.at(0.5125F, 0), floor.x) > 0) return true;
         return false;
     };
     EXPECT_FALSE(reaches_across(0.3F));
