@@ -13,9 +13,9 @@ class FrameWriter {
   public:
     explicit FrameWriter(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// Begins with a frame once the one before it is written. Errors: those of writing the one before, io.
+    /// Begins with a frame once the one before it is written. Errors: those of `finish`.
     void begin(Revision picture);
-    /// Waits until all is written. Errors: io; what was begun last has then left nothing half-written.
+    /// Waits until all is written. Errors: io; each file is there whole or not at all.
     void finish();
 
   private:

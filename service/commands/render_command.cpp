@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -54,20 +55,62 @@ std::string finished_line(const FrameStatistics& frame, const FrameRange& range)
     return line;
 }
 
-/// One frame, solved and given to the writer. The static pass runs within the first frame but is not counted
-/// as its time; having to wait for the files of the frame before is.
-FrameStatistics render_frame(SequenceState& state, int frame, FrameWriter& writer, const Context& context) {
+struct Rendered {
+    FrameStatistics statistics;
+    Revision picture;
+};
+
+/// One frame. The static pass runs within the first one but is not counted as its time.
+Rendered render_frame(SequenceState& state, int frame, const Context& context) {
     const auto begin = Clock::now();
     const Milliseconds outside_before = state.statistics().outside_frames();
-    Revision final_picture;
+    Rendered out;
     const auto keep_final = [&](const Revision& revision) {
-        if (revision.final) final_picture = revision;
+        if (revision.final) out.picture = revision;
     };
-    FrameStatistics statistics = step(state, frame, keep_final, context);
-    writer.begin(std::move(final_picture));
-    statistics.total = Clock::now() - begin - (state.statistics().outside_frames() - outside_before);
-    return statistics;
+    out.statistics = step(state, frame, keep_final, context);
+    out.statistics.total = Clock::now() - begin - (state.statistics().outside_frames() - outside_before);
+    return out;
 }
+
+/// Renders frames one after the other, each written while the next is worked on, and notes what they cost.
+class FrameLoop {
+  public:
+    FrameLoop(const RenderOptions& options, const FrameRange& range, Console& console, Report& report)
+        : range_(range), console_(console), report_(report), writer_(options.out) {}
+
+    void render(SequenceState& state, int frame, const Context& context) {
+        std::optional<Rendered> rendered;
+        try {
+            rendered = render_frame(state, frame, context);
+        } catch (...) {
+            // The frame before is there all the same, or there is more to say than why this one is not.
+            finish();
+            throw;
+        }
+        for (; warnings_shown_ < state.warnings().size(); ++warnings_shown_)
+            console_.warning(state.warnings()[warnings_shown_]);
+        finish();
+        report_.frames.push_back(rendered->statistics);
+        writer_.begin(std::move(rendered->picture));
+    }
+
+    /// Waits for the files of the last frame, which counts as its time, and says so.
+    void finish() {
+        if (report_.frames.empty()) return;
+        const auto begin = Clock::now();
+        writer_.finish();
+        report_.frames.back().total += Clock::now() - begin;
+        console_.line(finished_line(report_.frames.back(), range_));
+    }
+
+  private:
+    FrameRange range_;
+    Console& console_;
+    Report& report_;
+    FrameWriter writer_;
+    std::size_t warnings_shown_ = 0;
+};
 
 }  // namespace
 
@@ -94,20 +137,13 @@ void render_command(const RenderOptions& options, const std::stop_token& stop, C
     report.static_pass = Clock::now() - loaded;
     if (const SequenceStatistics& chosen = state.statistics(); !chosen.method_reason.empty())
         console.line("method " + chosen.method + ": " + chosen.method_reason);
-    FrameWriter writer(options.out);
-    std::size_t warnings_shown = 0;
+    FrameLoop frames(options, range, console, report);
     for (int frame = range.first; frame <= range.last; ++frame) {
         subject = "frame " + std::to_string(frame);
         const double done = frame - range.first + 1;
-        const Context part = context.part(done / steps, (done + 1) / steps);
-        report.frames.push_back(render_frame(state, frame, writer, part));
-        for (; warnings_shown < state.warnings().size(); ++warnings_shown)
-            console.warning(state.warnings()[warnings_shown]);
-        // The files of the frame before are there now.
-        if (frame > range.first) console.line(finished_line(report.frames.end()[-2], range));
+        frames.render(state, frame, context.part(done / steps, (done + 1) / steps));
     }
-    writer.finish();
-    console.line(finished_line(report.frames.back(), range));
+    frames.finish();
 
     report.static_pass += state.statistics().static_pass;
     report.sequence = state.statistics();

@@ -15,7 +15,7 @@ struct Report {
     Milliseconds load{};          ///< from the start of the program to the scene in memory
     Milliseconds static_pass{};   ///< meshing, acceleration structures and the pass over the furniture
     SequenceStatistics sequence;  ///< counts, and the method
-    std::vector<FrameStatistics> frames;  ///< `total` with writing the files
+    std::vector<FrameStatistics> frames;  ///< `total` with waiting for the files
 };
 
 /// The most memory this process has held so far, in millions of bytes. Errors: none. Thread-safe.

@@ -79,7 +79,8 @@ float DirectLight::weight(const Emitter& emitter, const Vec3& point, const Vec3&
     const RectangleSight sight =
         sight_of(light, axes, corner.x, corner.y, corner.z, normal.x, normal.y, normal.z);
     if (sight.height <= 0) return 0;
-    return most * (share_of_bound * bound + sight.expected(axes, corner_gains(sight, axes)));
+    return most * weight_of(sight.expected(axes, corner_gains(sight, axes)), bound, squared,
+                            emitter.radius_m * emitter.radius_m);
 }
 
 DirectLight::Place DirectLight::place_on_patches(const Emitter& emitter, const Vec3& from, float choice,

@@ -56,9 +56,6 @@ class DirectLight {
         Pose pose;
     };
     [[nodiscard]] std::span<const Emitter> emitters() const { return emitters_; }
-    /// How much a bound of what a rectangle can give counts beside what it is expected to give, so that it is
-    /// chosen sometimes also where the places looked at give nothing.
-    static constexpr float share_of_bound = 0.02F;
 
     /// A point of an emitter, and the solid angle it stands for.
     struct Place {

@@ -115,7 +115,6 @@ class TileUpdater {
     /// The further samples of pixels whose first ones ask for them.
     void update_further(Index tile, KeptTile& kept) {
         PerPixel outdated{};
-        const std::size_t before = kept.further.size();
         for_pixels(tile, [&](std::size_t pixel, int, int) {
             first_light_[pixel] = light_of(first_shares(kept, pixel), lit_.irradiance);
             const bool noisy =
@@ -127,7 +126,9 @@ class TileUpdater {
             kept.first_further[pixel] = static_cast<Index>(kept.further.size());
             kept.further.resize(kept.further.size() + more_);
         });
-        if (kept.further.size() != before) take_all_shadows();
+        // What is looked at first or again may lie where none of the tile's other samples do.
+        const bool shows_more = std::find(outdated.begin(), outdated.end(), true) != outdated.end();
+        if (shows_more) take_all_shadows();
         for_pixels(tile, [&](std::size_t pixel, int x, int y) {
             if (!kept.shows_further[pixel] || (!outdated[pixel] && !may_touch_samples())) return;
             for (std::size_t k = 0; k < more_; ++k) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/image/rectangle_choice.h"
+
 namespace afterglow {
 
 namespace {
@@ -36,12 +38,12 @@ void LampPacket::look_at(const DirectLight::Emitter& emitter, Sight& sight) cons
     const float radius = emitter.radius_m, area = emitter.area_m2, most = max_channel(emitter.emission);
     // What is not a rectangle is chosen by its bound alone, and shines everywhere.
     alignas(64) PacketFloats expected{};
-    float share_of_bound = 1, behind = -1;
+    const bool is_rectangle = emitter.rectangle.has_value();
+    float behind = -1;
     Vec3 plane(0);
     if (const auto& r = emitter.rectangle) {
         sight.view.look(*r, points_);
         expected = sight.view.expected();
-        share_of_bound = DirectLight::share_of_bound;
         plane = glm::cross(r->edge_u, r->edge_v);
         behind = glm::dot(plane, r->corner);
     }
@@ -56,7 +58,9 @@ void LampPacket::look_at(const DirectLight::Emitter& emitter, Sight& sight) cons
         const float cosine = std::min(1.0F, (along + radius) / std::sqrt(squared));
         const float ahead =
             plane.x * points_.x[lane] + plane.y * points_.y[lane] + plane.z * points_.z[lane] - behind;
-        const float weight = most * (share_of_bound * (area * cosine / squared) + expected[lane]);
+        const float bound = area * cosine / squared;
+        const float weight =
+            most * (is_rectangle ? weight_of(expected[lane], bound, squared, radius * radius) : bound);
         weights[lane] = (static_cast<int>(cosine > 0) & static_cast<int>(ahead > 0)) != 0 ? weight : 0.0F;
     }
     sight.weight = weights;

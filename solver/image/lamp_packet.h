@@ -49,7 +49,7 @@ class LampPacket {
     const DirectLight* direct_;
     PointPacket points_{};
     std::vector<Sight> sights_;       // by emitter
-    alignas(64) PacketFloats sum_{};  // of bounds
+    alignas(64) PacketFloats sum_{};  // of weights
     alignas(64) PacketFloats weight_{};
     PlacePacket places_{};
 };

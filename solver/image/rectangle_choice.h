@@ -53,7 +53,7 @@ struct RectangleSight {
                std::sqrt(x * x + y * y + height * height + 1e-6F * axes.area_m2());
     }
     /// About what the whole rectangle gives if nothing stands between, times π, per W/m²: the mean of five
-    /// places, which a quadratic function has.
+    /// places, which a quadratic function has. Nearer than a diagonal it may be far too much or too little.
     [[nodiscard]] float expected(const RectangleAxes& axes, const CornerWeights& gains) const {
         return axes.area_m2() / 12 *
                (gains.w00 + gains.w10 + gains.w01 + gains.w11 + 8 * gain(axes, 0.5F, 0.5F));
@@ -80,6 +80,16 @@ inline CornerWeights corner_gains(const RectangleSight& sight, const RectangleAx
 inline CornerWeights corner_cosines(const RectangleSight& sight, const RectangleAxes& axes) {
     return {sight.cosine(axes, 0, 0), sight.cosine(axes, 1, 0), sight.cosine(axes, 0, 1),
             sight.cosine(axes, 1, 1)};
+}
+
+/// How often a rectangle is chosen beside others: by what it is expected to give, held to what a bound of it
+/// says, which is true to a factor near by, where five places say little, and keeps it possible where they
+/// lie below a horizon. `bound`: area · cosine of the highest part / distance_squared, which is no less than
+/// `radius_squared`, of a ball around it.
+inline float weight_of(float expected, float bound, float distance_squared, float radius_squared) {
+    const float nearness = radius_squared / distance_squared;
+    const float least = std::max(0.02F, 0.5F * nearness * nearness);
+    return std::min(std::max(expected, least * bound), 2 * bound);
 }
 
 /// (s, t) bent towards corners of more weight; how densely places lie there, 1 on average.

@@ -97,7 +97,8 @@ void RectanglePacket::look_closely(const RectangleLight& light, const PointPacke
         view.height_[k] = height;
         view.b0_[k] = n0;
         view.b1_[k] = n2;
-        view.k_[k] = 2 * pi - g2 - g3;
+        // No number where a point lies in an edge's plane and the rectangle's.
+        view.k_[k] = near ? 2 * pi - g2 - g3 : 0.0F;
         view.solid_angle_[k] = near ? solid_angle : 0.0F;
         view.w00_[k] = near ? cosines.w00 : gains.w00;
         view.w10_[k] = near ? cosines.w10 : gains.w10;

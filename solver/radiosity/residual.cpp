@@ -130,6 +130,7 @@ class Pusher {
                 prefetch(column_entries(problem_.matrix.sight_columns, patches[p + 1]));
             const Index i = patches[p];
             const DoubleLanes change = take_up(i);
+            if (!is_any(change)) continue;
             work_.is_pushed[i] = 1;
             state_.entries += problem_.matrix.sight_columns.column_begin[i + 1] -
                               problem_.matrix.sight_columns.column_begin[i] + of_lamps.column_begin[i + 1] -

@@ -39,11 +39,11 @@ struct LineAxes {
 };
 
 /// Where each line meets the plane of a triangle, metres; infinite where it misses the triangle or meets it
-/// behind its origin. Lines through an edge or a corner that triangles share meet at least one of them: a
-/// corner lies at the same place across the line for all its triangles, and on which side of a point an edge
-/// between two places passes is computed without error, or as zero, which counts as met. Source: Woop,
-/// Benthin and Wald 2013, "Watertight ray/triangle intersection", with axes for each line. `axes` are those
-/// of `rays`.
+/// behind its origin. Lines through an edge or a corner that triangles share meet at least one of them,
+/// unless they lie in its plane but for rounding: a corner lies at the same place across the line for all its
+/// triangles, and on which side of a point an edge between two places passes is computed without error, or as
+/// zero, which counts as met. Source: Woop, Benthin and Wald 2013, "Watertight ray/triangle intersection",
+/// with axes for each line. `axes` are those of `rays`.
 void meet(const RayPacket& rays, const LineAxes& axes, const LineFace& face, std::array<float, 16>& distance);
 
 }  // namespace afterglow

@@ -93,5 +93,24 @@ TEST(RectangleChoice, WhatARectangleIsExpectedToGiveIsNearlyWhatItGivesFromAfar)
     }
 }
 
+TEST(RectangleChoice, NearByARectangleIsChosenByWhatItGivesToAFactorOfFour) {
+    const RectangleLight light{Vec3(-0.5F, 0, 0.5F), Vec3(1, 0, 0), Vec3(0, 0, -1)};  // shines upwards
+    const RectangleAxes axes(light);
+    ASSERT_GT(axes.normal.y, 0);
+    const Vec3 down(0, -1, 0);
+    for (const float x : {0.0F, 0.25F, 0.45F, 0.5F})
+        for (const float height : {0.001F, 0.02F, 0.05F, 0.1F, 0.2F, 0.5F, 1.0F, 3.0F}) {
+            const Vec3 from(x, height, 0.2F), to = light.corner - from;
+            const RectangleSight sight = sight_of(light, axes, to.x, to.y, to.z, down.x, down.y, down.z);
+            const float radius_squared = 0.5F, squared = std::max(glm::dot(from, from), radius_squared);
+            const float weight = weight_of(sight.expected(axes, corner_gains(sight, axes)), 1 / squared,
+                                           squared, radius_squared);
+            const auto exact =
+                static_cast<float>(double{pi} * RandomRectangles::form_factor(light, from, down));
+            EXPECT_GT(weight, exact / 4) << x << " " << height;
+            EXPECT_LT(weight, exact * 4) << x << " " << height;
+        }
+}
+
 }  // namespace
 }  // namespace afterglow
