@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <future>
+#include <utility>
 
 #include "solver/sequence/sequence.h"
 

@@ -75,9 +75,7 @@ float DirectLight::weight(const Emitter& emitter, const Vec3& point, const Vec3&
     if (!emitter.rectangle) return most * bound;
     const RectangleLight& light = *emitter.rectangle;
     const RectangleAxes axes(light);
-    const Vec3 corner = light.corner - point;
-    const RectangleSight sight =
-        sight_of(light, axes, corner.x, corner.y, corner.z, normal.x, normal.y, normal.z);
+    const RectangleSight sight = sight_of(light, axes, point, normal);
     if (sight.height <= 0) return 0;
     return most * weight_of(sight.expected(axes, corner_gains(sight, axes)), bound, squared,
                             emitter.radius_m * emitter.radius_m);

@@ -97,7 +97,8 @@ class TileUpdater {
     void update_first(Index tile, KeptTile& kept) {
         if (kept.first.empty()) kept.first.resize(KeptTile::pixels * few_);
         for_pixels(tile, [&](std::size_t pixel, int x, int y) {
-            for (std::size_t k = 0; may_touch_samples() && k < few_; ++k) {
+            if (!may_touch_samples()) return;
+            for (std::size_t k = 0; k < few_; ++k) {
                 KeptSample& sample = kept.first[pixel * few_ + k];
                 if (!is_touched(sample)) continue;
                 new_first_[pixel] = true;

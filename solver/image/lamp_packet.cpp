@@ -42,8 +42,7 @@ void LampPacket::look_at(const DirectLight::Emitter& emitter, Sight& sight) cons
     float behind = -1;
     Vec3 plane(0);
     if (const auto& r = emitter.rectangle) {
-        sight.view.look(*r, points_);
-        expected = sight.view.expected();
+        expected = expected_of(*r, points_);
         plane = glm::cross(r->edge_u, r->edge_v);
         behind = glm::dot(plane, r->corner);
     }
@@ -96,7 +95,7 @@ void LampPacket::place_on_rectangle(Index emitter, const std::array<Index, 16>& 
                                     const PacketFloats& t) {
     const RectangleLight& light = *direct_->emitters()[emitter].rectangle;
     Sight& sight = sights_[emitter];
-    if (!sight.is_viewed) sight.view.look_closely(light, points_);
+    if (!sight.is_viewed) sight.view.look(light, points_);
     sight.is_viewed = true;
     sight.view.place(light, points_, chosen, emitter, s, t, places_);
 }

@@ -37,7 +37,7 @@ class LampPacket {
     struct Sight {
         alignas(64) PacketFloats weight;  ///< how often it is chosen, beside others
         RectanglePacket view;             ///< of a rectangle
-        bool is_viewed = false;           ///< closely, which is done when first needed
+        bool is_viewed = false;           ///< whether it has been made, which is done when first needed
     };
 
     void look_at(const DirectLight::Emitter& emitter, Sight& sight) const;

@@ -73,6 +73,12 @@ inline RectangleSight sight_of(const RectangleLight& light, const RectangleAxes&
     return out;
 }
 
+inline RectangleSight sight_of(const RectangleLight& light, const RectangleAxes& axes, const Vec3& from,
+                               const Vec3& normal) {
+    const Vec3 to = light.corner - from;
+    return sight_of(light, axes, to.x, to.y, to.z, normal.x, normal.y, normal.z);
+}
+
 inline CornerWeights corner_gains(const RectangleSight& sight, const RectangleAxes& axes) {
     return {sight.gain(axes, 0, 0), sight.gain(axes, 1, 0), sight.gain(axes, 0, 1), sight.gain(axes, 1, 1)};
 }

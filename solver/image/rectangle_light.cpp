@@ -88,15 +88,10 @@ RectanglePoint RectangleView::at(float s, float t) const {
             static_cast<float>(near_->solid_angle)};
 }
 
-RectanglePoint point_seen(const RectangleLight& light, const Vec3& from, float s, float t) {
-    return RectangleView(light, from).at(s, t);
-}
-
 RectanglePoint point_for(const RectangleLight& light, const Vec3& from, const Vec3& normal, float s,
                          float t) {
     const RectangleAxes axes(light);
-    const Vec3 to = light.corner - from;
-    const RectangleSight sight = sight_of(light, axes, to.x, to.y, to.z, normal.x, normal.y, normal.z);
+    const RectangleSight sight = sight_of(light, axes, from, normal);
     const RectangleView view(light, from);
     const BentPlace bent =
         bend(s, t, view.is_near() ? corner_cosines(sight, axes) : corner_gains(sight, axes));

@@ -19,15 +19,9 @@ struct RectanglePoint {
     float solid_angle = 0;  ///< what the point stands for, steradians; 0 from behind or edge-on
 };
 
-/// A point of a rectangle for (s, t) in [0,1)²: uniform in solid angle where the rectangle is near (then
-/// `solid_angle` is the whole rectangle's), uniform in area where it is so far that the two hardly differ
-/// (then it is area · cosine / distance²). Either way the mean of f · solid_angle is the integral of f over
-/// the rectangle's solid angle. Source: Ureña, Fajardo and King 2013, "An area-preserving parametrization for
-/// spherical rectangles". Thread-safety: pure.
-RectanglePoint point_seen(const RectangleLight& light, const Vec3& from, float s, float t);
-
-/// Likewise for a point of a surface with a unit normal, nearly in proportion to what each place gives there:
-/// `solid_angle` is less where places lie more densely.
+/// A point of a rectangle for (s, t) in [0,1)², for a point of a surface with a unit normal: nearly in
+/// proportion to what each place gives there. The mean of f · solid_angle is the integral of f over the
+/// rectangle's solid angle. Thread-safety: pure.
 RectanglePoint point_for(const RectangleLight& light, const Vec3& from, const Vec3& normal, float s, float t);
 
 /// A rectangle as one point sees it: what all points that are chosen from there share. Thread-safety: const
@@ -38,7 +32,10 @@ class RectangleView {
 
     /// Squared distance to the centre, m², up to which points are chosen in solid angle.
     [[nodiscard]] static float near_squared(const RectangleLight& light);
-    /// As `point_seen`.
+    /// A point for (s, t) in [0,1)²: uniform in solid angle where the rectangle is near (then `solid_angle`
+    /// is the whole rectangle's), uniform in area where it is so far that the two hardly differ (then it is
+    /// area · cosine / distance²). The mean of f · solid_angle is as for `point_for`. Source: Ureña, Fajardo
+    /// and King 2013, "An area-preserving parametrization for spherical rectangles".
     [[nodiscard]] RectanglePoint at(float s, float t) const;
     /// Whether points are chosen in solid angle.
     [[nodiscard]] bool is_near() const { return near_.has_value(); }

@@ -56,30 +56,32 @@ float hypotenuse(float a, float b) {
     return std::sqrt(a * a + b * b);
 }
 
+RectangleSight sight_of(const RectangleLight& light, const RectangleAxes& axes, const PointPacket& points,
+                        std::size_t k) {
+    return sight_of(light, axes, light.corner.x - points.x[k], light.corner.y - points.y[k],
+                    light.corner.z - points.z[k], points.normal_x[k], points.normal_y[k], points.normal_z[k]);
+}
+
 }  // namespace
+
+PacketFloats expected_of(const RectangleLight& light, const PointPacket& points) {
+    const RectangleAxes axes(light);
+    alignas(64) PacketFloats expected;
+    for (std::size_t k = 0; k < lanes; ++k) {
+        const RectangleSight sight = sight_of(light, axes, points, k);
+        expected[k] = sight.expected(axes, corner_gains(sight, axes));
+    }
+    return expected;
+}
 
 void RectanglePacket::look(const RectangleLight& light, const PointPacket& points) {
     const RectangleAxes axes(light);
-    // Local, so that nothing it is made from can be part of it.
-    alignas(64) PacketFloats expected;
-    for (std::size_t k = 0; k < lanes; ++k) {
-        const RectangleSight sight = sight_of(light, axes, light.corner.x - points.x[k],
-                                              light.corner.y - points.y[k], light.corner.z - points.z[k],
-                                              points.normal_x[k], points.normal_y[k], points.normal_z[k]);
-        expected[k] = sight.expected(axes, corner_gains(sight, axes));
-    }
-    expected_ = expected;
-}
-
-void RectanglePacket::look_closely(const RectangleLight& light, const PointPacket& points) {
-    const RectangleAxes axes(light);
     const Vec3 centre = light.corner + 0.5F * (light.edge_u + light.edge_v);
     const float near_squared = RectangleView::near_squared(light);
+    // Local, so that nothing it is made from can be part of it.
     RectanglePacket view;
     for (std::size_t k = 0; k < lanes; ++k) {
-        const RectangleSight sight = sight_of(light, axes, light.corner.x - points.x[k],
-                                              light.corner.y - points.y[k], light.corner.z - points.z[k],
-                                              points.normal_x[k], points.normal_y[k], points.normal_z[k]);
+        const RectangleSight sight = sight_of(light, axes, points, k);
         const float x0 = sight.x0, y0 = sight.y0, height = sight.height;
         const float x1 = x0 + axes.length_u, y1 = y0 + axes.length_v;
         // Normals of the four planes through the viewpoint and an edge; only their heights matter.
@@ -105,7 +107,6 @@ void RectanglePacket::look_closely(const RectangleLight& light, const PointPacke
         view.w01_[k] = near ? cosines.w01 : gains.w01;
         view.w11_[k] = near ? cosines.w11 : gains.w11;
     }
-    view.expected_ = expected_;
     *this = view;
 }
 
@@ -113,7 +114,7 @@ void RectanglePacket::place(const RectangleLight& light, const PointPacket& poin
                             const std::array<Index, 16>& chosen, Index by, const PacketFloats& s,
                             const PacketFloats& t, PlacePacket& out) const {
     const RectangleAxes axes(light);
-    // Local, so that nothing it is made from can be part of it.
+    // Local likewise.
     PlacePacket place;
     for (std::size_t k = 0; k < lanes; ++k) {
         const float x0 = x0_[k], y0 = y0_[k], height = height_[k], b0 = b0_[k];

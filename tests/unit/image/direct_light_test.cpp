@@ -105,7 +105,7 @@ TEST(RectangleLight, SolidAngleIsThatOfAPyramidOverItsWholeRange) {
     for (const float h : {0.001F, 0.1F, 1.0F, 3.0F}) {
         const RectangleLight light{Vec3(-1, 0, -1), Vec3(0, 0, 2), Vec3(2, 0, 0)};
         const double exact = 4 * std::asin(1 / (1 + static_cast<double>(h * h)));
-        EXPECT_NEAR(point_seen(light, Vec3(0, h, 0), 0.3F, 0.8F).solid_angle, exact, 1e-4 * exact);
+        EXPECT_NEAR(RectangleView(light, Vec3(0, h, 0)).at(0.3F, 0.8F).solid_angle, exact, 1e-4 * exact);
     }
 }
 
@@ -115,11 +115,12 @@ TEST(RectangleLight, PointsLieOnItAndAreUniformInSolidAngle) {
     const SobolPoints points(4096);
     // The share of samples in a half must be that half's share of the solid angle.
     const RectangleLight half{Vec3(-1, 0, -1), Vec3(0, 0, 2), Vec3(1, 0, 0)};
-    const float share = point_seen(half, from, 0, 0).solid_angle / point_seen(light, from, 0, 0).solid_angle;
+    const float share =
+        RectangleView(half, from).at(0, 0).solid_angle / RectangleView(light, from).at(0, 0).solid_angle;
     int in_half = 0;
     for (std::size_t k = 0; k < points.size(); ++k) {
         const Sample4 s = points.at(k, 3);
-        const Vec3 at = point_seen(light, from, s[0], s[1]).position;
+        const Vec3 at = RectangleView(light, from).at(s[0], s[1]).position;
         EXPECT_NEAR(at.y, 0, 1e-5);
         EXPECT_LE(std::max(std::abs(at.x), std::abs(at.z)), 1 + 1e-5F);
         if (at.x < 0) ++in_half;

@@ -26,7 +26,7 @@ World lamps_world() {
 /// Seen so edge-on, a packet chooses its places otherwise; see rectangle_packet_test.
 bool is_edge_on(const DirectLight::Emitter& emitter, const Vec3& point) {
     return emitter.rectangle && RectangleView(*emitter.rectangle, point).is_near() &&
-           point_seen(*emitter.rectangle, point, 0, 0).solid_angle < 0.006F;
+           RectangleView(*emitter.rectangle, point).at(0, 0).solid_angle < 0.006F;
 }
 
 TEST(LampPacket, GivesWhatEachPointWouldGetByItself) {

@@ -72,7 +72,7 @@ TEST(RectangleChoice, PlacesForAPointBringMoreEvenLightThanUniformOnes) {
             });
         };
         bent_square += variance([&](float s, float t) { return point_for(light, from, normal, s, t); });
-        uniform_square += variance([&](float s, float t) { return point_seen(light, from, s, t); });
+        uniform_square += variance([&](float s, float t) { return RectangleView(light, from).at(s, t); });
     }
     EXPECT_LT(bent_square, 0.5 * uniform_square);
 }
@@ -86,8 +86,7 @@ TEST(RectangleChoice, WhatARectangleIsExpectedToGiveIsNearlyWhatItGivesFromAfar)
         const Vec3 from = centre + 3 * glm::length(light.edge_u + light.edge_v) *
                                        glm::normalize(axes.normal + 0.4F * random.normal());
         const Vec3 normal = glm::normalize(centre - from);
-        const Vec3 to = light.corner - from;
-        const RectangleSight sight = sight_of(light, axes, to.x, to.y, to.z, normal.x, normal.y, normal.z);
+        const RectangleSight sight = sight_of(light, axes, from, normal);
         const double exact = double{pi} * random.form_factor(light, from, normal);
         EXPECT_NEAR(sight.expected(axes, corner_gains(sight, axes)), exact, 0.01 * exact);
     }
@@ -100,8 +99,8 @@ TEST(RectangleChoice, NearByARectangleIsChosenByWhatItGivesToAFactorOfFour) {
     const Vec3 down(0, -1, 0);
     for (const float x : {0.0F, 0.25F, 0.45F, 0.5F})
         for (const float height : {0.001F, 0.02F, 0.05F, 0.1F, 0.2F, 0.5F, 1.0F, 3.0F}) {
-            const Vec3 from(x, height, 0.2F), to = light.corner - from;
-            const RectangleSight sight = sight_of(light, axes, to.x, to.y, to.z, down.x, down.y, down.z);
+            const Vec3 from(x, height, 0.2F);
+            const RectangleSight sight = sight_of(light, axes, from, down);
             const float radius_squared = 0.5F, squared = std::max(glm::dot(from, from), radius_squared);
             const float weight = weight_of(sight.expected(axes, corner_gains(sight, axes)), 1 / squared,
                                            squared, radius_squared);

@@ -49,12 +49,11 @@ TEST(RectanglePacket, ChoosesThePlacesThatEachPointWouldChoose) {
         }
         RectanglePacket packet;
         packet.look(c.light, c.points);
-        packet.look_closely(c.light, c.points);
         PlacePacket places;
         packet.place(c.light, c.points, all_chosen, 0, s, t, places);
         for (std::size_t k = 0; k < 16; ++k) {
             // Seen more edge-on, it is chosen as from far off.
-            if (point_seen(c.light, c.from[k], 0, 0).solid_angle < 0.01F) continue;
+            if (RectangleView(c.light, c.from[k]).at(0, 0).solid_angle < 0.01F) continue;
             const RectanglePoint one = point_for(c.light, c.from[k], c.normal[k], s[k], t[k]);
             const Vec3 at(places.x[k], places.y[k], places.z[k]);
             EXPECT_NEAR(places.solid_angle[k], one.solid_angle, 2e-3F * one.solid_angle);
@@ -78,7 +77,6 @@ TEST(RectanglePacket, GivesPointsTheirFormFactorAlsoEdgeOn) {
         });
         RectanglePacket packet;
         packet.look(c.light, c.points);
-        packet.look_closely(c.light, c.points);
         std::array<double, 16> mean{};
         for (std::uint32_t i = 0; i < count; ++i) {
             const Sample4 at = numbers.at(i, 5);
@@ -107,7 +105,6 @@ TEST(RectanglePacket, LeavesLanesAloneThatChoseAnother) {
     for (std::size_t k = 0; k < 16; ++k) chosen[k] = k % 2;
     RectanglePacket packet;
     packet.look(c.light, c.points);
-    packet.look_closely(c.light, c.points);
     PlacePacket places;
     places.x.fill(-77);
     places.solid_angle.fill(-77);
