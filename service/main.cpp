@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <malloc.h>
 #include <new>
 #include <span>
 #include <string>
@@ -54,6 +55,14 @@ __attribute__((constructor(101), target("arch=x86-64"))) void require_processor(
 }
 #endif
 
+/// Frame after frame asks for what the one before gave back, and pages that went to the system meanwhile come
+/// back to be cleared first: a twentieth of a frame's time. Larger blocks, and more than this much, still go.
+void keep_freed_memory() {
+    constexpr int largest_block_bytes = 32 << 20, most_bytes = 256 << 20;
+    ::mallopt(M_MMAP_THRESHOLD, largest_block_bytes);
+    ::mallopt(M_TRIM_THRESHOLD, most_bytes);
+}
+
 int exit_status(ErrorKind kind, int signal) {
     if (kind == ErrorKind::cancelled) return status_signal + (signal != 0 ? signal : SIGINT);
     return kind == ErrorKind::io ? status_failed : status_bad_input;
@@ -97,6 +106,7 @@ int main(int argc, char** argv) {
     } catch (const std::exception& e) {
         return complain(e.what(), status_bad_input);
     }
+    keep_freed_memory();
     const afterglow::Interrupt interrupt;
     try {
         if (command == "render")

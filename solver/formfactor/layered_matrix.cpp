@@ -1,6 +1,7 @@
 #include "solver/formfactor/layered_matrix.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "solver/base/error.h"
@@ -91,36 +92,43 @@ void count_base(LayeredMatrix& matrix, const LayerScene& scene, const Context& c
     }
 }
 
+/// Scales the layers of a static row whose light lines add up to `lit`; false where it must be compiled
+/// whole.
+bool scale_row(LayeredMatrix& matrix, const SightLines& sight, std::size_t row, double lit) {
+    const LineTally& tally = matrix.ledger.tally[row];
+    const Index valid = tally.valid(), others = tally.outside + tally.on_others;
+    matrix.valid_share[row] = static_cast<float>(valid) / static_cast<float>(sight.lines_per_patch());
+    matrix.sight.scale[row] = matrix.light.scale[row] = matrix.sky[row] = 0;
+    matrix.row_sum[row] = 0;
+    if (valid == 0) return true;
+    const double from_lamps = lit / static_cast<double>(matrix.valid_share[row]);
+    if (from_lamps >= 1 || others == 0) return false;
+    const double weight = (1 - from_lamps) / others;
+    matrix.sight.scale[row] = static_cast<float>(weight);
+    matrix.light.scale[row] = 1 / matrix.valid_share[row];
+    matrix.sky[row] = static_cast<float>(weight * tally.outside);
+    matrix.row_sum[row] = from_lamps + weight * tally.on_others;
+    return true;
+}
+
 /// Scales the layers of the static rows and says which rows must be compiled whole.
-void scale_rows(LayeredMatrix& matrix, const LayerScene& scene) {
+void scale_rows(LayeredMatrix& matrix, const LayerScene& scene, const Context& context) {
     matrix.whole_rows.clear();
-    const auto lines = static_cast<float>(scene.sight.lines_per_patch());
     const Index layered = matrix.ledger.has_moving_lamps ? 0 : scene.mesh.static_size();
-    std::vector<double> lit_by(matrix.ledger.from_lamps);
-    for (std::size_t b = 0; b < matrix.light.covered.size(); ++b)
-        for_covered(matrix.light, b, [&](std::size_t row, Index, Index, float value) {
-            lit_by[row] -= static_cast<double>(value);
-        });
-    for (Index row = 0; row < layered; ++row) {
-        const LineTally& tally = matrix.ledger.tally[row];
-        const double lit = lit_by[row];
-        const Index valid = tally.valid(), others = tally.outside + tally.on_others;
-        matrix.valid_share[row] = static_cast<float>(valid) / lines;
-        matrix.sight.scale[row] = matrix.light.scale[row] = matrix.sky[row] = 0;
-        matrix.row_sum[row] = 0;
-        if (valid == 0) continue;
-        const double from_lamps = std::max(lit, 0.0) / static_cast<double>(matrix.valid_share[row]);
-        if (from_lamps >= 1 || others == 0) {
-            matrix.whole_rows.push_back(row);
-            continue;
-        }
-        const double weight = (1 - from_lamps) / others;
-        matrix.sight.scale[row] = static_cast<float>(weight);
-        matrix.light.scale[row] = 1 / matrix.valid_share[row];
-        matrix.sky[row] = static_cast<float>(weight * tally.outside);
-        matrix.row_sum[row] = from_lamps + weight * tally.on_others;
-    }
-    for (Index row = layered; row < matrix.rows(); ++row) matrix.whole_rows.push_back(row);
+    std::vector<char> is_whole(layered);
+    context.for_chunks(layered, rows_per_chunk, [&](std::size_t begin, std::size_t end) {
+        std::array<double, rows_per_chunk> lit;
+        std::copy(matrix.ledger.from_lamps.begin() + static_cast<std::ptrdiff_t>(begin),
+                  matrix.ledger.from_lamps.begin() + static_cast<std::ptrdiff_t>(end), lit.begin());
+        for (std::size_t b = begin / block_size; b * block_size < end; ++b)
+            for_covered(matrix.light, b, [&](std::size_t row, Index, Index, float value) {
+                lit[row - begin] -= static_cast<double>(value);
+            });
+        for (std::size_t row = begin; row < end; ++row)
+            is_whole[row] = scale_row(matrix, scene.sight, row, std::max(lit[row - begin], 0.0)) ? 0 : 1;
+    });
+    for (Index row = 0; row < matrix.rows(); ++row)
+        if (row >= layered || is_whole[row] != 0) matrix.whole_rows.push_back(row);
 }
 
 void compile_whole(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
@@ -143,7 +151,7 @@ void compile_whole(LayeredMatrix& matrix, const LayerScene& scene, const Visible
 /// What is left to do once the layers show the lines that changed.
 void finish(LayeredMatrix& matrix, const LayerScene& scene, const VisibleLines& visible,
             const Context& context) {
-    scale_rows(matrix, scene);
+    scale_rows(matrix, scene, context);
     compile_whole(matrix, scene, visible, context);
 }
 
@@ -160,6 +168,21 @@ CountColumns counted(const FormFactorColumns& columns) {
         packed.column_begin.push_back(packed.entry.size());
     }
     return packed;
+}
+
+template <class Take>
+void for_row(const FormFactorMatrix& matrix, std::size_t row, const Take& take) {
+    for (std::uint64_t e = matrix.row_begin[row]; e < matrix.row_begin[row + 1]; ++e)
+        take(matrix.column[e], matrix.value[e]);
+}
+
+/// Whether sight lines of any patch of a static block count for lamps.
+bool counts_lamps(const LayeredMatrix& matrix, const Lamps& lamps, std::size_t block) {
+    const std::span<const char> all = matrix.ledger.by_light_lines;
+    const std::size_t of_block = block_size * lamps.list.size(),
+                      first = std::min(block * of_block, all.size());
+    const auto here = all.subspan(first, std::min(of_block, all.size() - first));
+    return std::find(here.begin(), here.end(), 0) != here.end();
 }
 
 bool by_line(const LineChange& a, const LineChange& b) {
@@ -250,30 +273,37 @@ std::uint64_t lines_changed(std::span<const RowChanges> changes) {
 std::vector<Rgb> lamp_irradiance(const LayeredMatrix& matrix, const Lamps& lamps,
                                  std::span<const Rgb> emission, const Context& context) {
     std::vector<Rgb> irradiance(matrix.rows(), Rgb(0));
-    // By columns: each lamp reaches the rows that have an entry for it, in whichever layer.
-    for (const Index lamp : lamps.patches) {
+    // Sight lines count lamps in few rows, so by columns; light lines count nothing else, so by rows.
+    for (const Index lamp : lamps.patches)
         for_column(matrix.sight_columns, lamp, [&](Index row, float lines) {
             irradiance[row] += matrix.sight.scale[row] * lines * emission[lamp];
         });
-        for_column(matrix.light_columns, lamp, [&](Index row, float value) {
-            irradiance[row] += matrix.light.scale[row] * value * emission[lamp];
-        });
-    }
     const auto light_of = [&](Index column) {
         const bool is_lamp = column != matrix.nowhere() && lamps.lamp_of_patch[column] != no_index;
         return is_lamp ? emission[column] : Rgb(0);
     };
+    const auto uncover = [&](const LayeredRows& layer, std::size_t block) {
+        for_covered(layer, block, [&](std::size_t row, Index base, Index now, float value) {
+            irradiance[row] += layer.scale[row] * value * (light_of(now) - light_of(base));
+        });
+    };
     context.for_chunks(
         matrix.sight.covered.size(), blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t b = begin; b < end; ++b)
-                for (const LayeredRows* layer : {&matrix.sight, &matrix.light})
-                    for_covered(*layer, b, [&](std::size_t row, Index base, Index now, float value) {
-                        irradiance[row] += layer->scale[row] * value * (light_of(now) - light_of(base));
-                    });
+            for (std::size_t row = begin * block_size; row < std::min(end * block_size, matrix.rows()); ++row)
+                for_row(matrix.light.base, row, [&](Index column, float value) {
+                    irradiance[row] += matrix.light.scale[row] * value * emission[column];
+                });
+            for (std::size_t b = begin; b < end; ++b) {
+                if (counts_lamps(matrix, lamps, b)) uncover(matrix.sight, b);
+                uncover(matrix.light, b);
+            }
         });
-    for (std::size_t k = 0; k < matrix.whole_rows.size(); ++k)
-        for (auto e = matrix.whole.row_begin[k]; e < matrix.whole.row_begin[k + 1]; ++e)
-            irradiance[matrix.whole_rows[k]] += matrix.whole.value[e] * light_of(matrix.whole.column[e]);
+    context.for_chunks(matrix.whole_rows.size(), rows_per_chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k)
+            for_row(matrix.whole, k, [&](Index column, float value) {
+                irradiance[matrix.whole_rows[k]] += value * light_of(column);
+            });
+    });
     // Covered light is taken off again: what rounding leaves below zero is zero.
     for (Rgb& value : irradiance) value = glm::max(value, Rgb(0));
     return irradiance;

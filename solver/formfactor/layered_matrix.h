@@ -112,7 +112,7 @@ struct LayeredMatrix {
     std::vector<float> valid_share;
     std::vector<double> row_sum;  ///< Σ_j F_ij by row
 
-    /// For `show` only.
+    /// For `show` and `lamp_irradiance` only.
     struct Ledger {
         bool has_moving_lamps = false;
         std::vector<LineTally> tally;      ///< by static patch

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "solver/base/prefetch.h"
 #include "solver/image/picture_changes.h"
 
 namespace afterglow {
@@ -153,7 +154,7 @@ class TileUpdater {
     void finish(KeptTile& kept) {
         samples += tasks_.size();
         samples_.update(kept, actors_, tasks_);
-        samples_.finish();
+        samples_.finish(kept);
         tasks_.clear();
     }
 
@@ -217,9 +218,16 @@ class TileUpdater {
     std::vector<PatchShare> shares_;
 };
 
+/// What every tile is read for whose light changed; the rest is for the few whose samples are looked at.
+void ask_for(const KeptTile& tile) {
+    prefetch<KeptPixel>(tile.sums);
+    prefetch<PatchShare>(tile.shares);
+    prefetch<Index>(tile.patches);
+}
+
 /// All that is kept, so that memory is known before it is asked for: as many pixels are noisy as usual.
 bool fits(const CameraView& view, const KeptPictureConfig& config) {
-    constexpr double noisy_share = 0.4, bytes_per_sample = 140;
+    constexpr double noisy_share = 0.4, bytes_per_sample = 160;
     const double samples =
         config.picture.samples_per_pixel + noisy_share * static_cast<double>(further_count(config.picture));
     return samples * bytes_per_sample * view.width * view.height <= static_cast<double>(config.most_bytes);
@@ -259,7 +267,10 @@ PictureUpdate step(KeptPictureState& state, const CameraView& view, const LitWor
         std::atomic<std::uint64_t> rays = 0, samples = 0, pixels = 0;
         context.for_chunks(state.tiles.size(), tiles_per_chunk, [&](std::size_t begin, std::size_t end) {
             TileUpdater updater(state, shown, changes, camera, lines);
-            for (std::size_t t = begin; t < end; ++t) updater.update(static_cast<Index>(t));
+            for (std::size_t t = begin; t < end; ++t) {
+                if (t + 1 < end) ask_for(state.tiles[t + 1]);
+                updater.update(static_cast<Index>(t));
+            }
             rays += updater.rays_traced();
             samples += updater.samples;
             pixels += updater.pixels;

@@ -25,6 +25,15 @@ bool any_holds(const TileActors& actors, const Vec3& position) {
                        [&](const ShadowRegion* region) { return region->holds(position); });
 }
 
+/// Remembers line i of a sample that there is room for.
+void keep_line(KeptTile& tile, const KeptSample& sample, std::size_t i, const ShadowLinePacket& lines,
+               std::size_t lane) {
+    if (sample.first_line == no_index) return;
+    const auto before = static_cast<Index>(std::popcount(sample.unblocked & ((1U << i) - 1)));
+    const Ray ray = lines.rays.ray(lane);
+    tile.lines[sample.first_line + before] = {ray.direction, ray.far, lines.gain[lane]};
+}
+
 }  // namespace
 
 void KeptTile::note_patches() {
@@ -38,7 +47,7 @@ void KeptTile::note_patches() {
 std::size_t KeptTile::bytes() const {
     return sizeof(KeptTile) + (first.capacity() + further.capacity()) * sizeof(KeptSample) +
            weights.capacity() * sizeof(PatchWeight) + shares.capacity() * sizeof(PatchShare) +
-           patches.capacity() * sizeof(Index);
+           patches.capacity() * sizeof(Index) + lines.capacity() * sizeof(KeptLine);
 }
 
 SampleUpdater::SampleUpdater(const LitWorld& lit, const CameraSamples& camera, const ShadowLines& lines)
@@ -61,8 +70,9 @@ void SampleUpdater::update(KeptTile& tile, const TileActors& actors, std::span<c
         meet(tile, actors, tasks.subspan(begin, std::min(lanes, tasks.size() - begin)));
 }
 
-void SampleUpdater::finish() {
-    for (Queue* queue : {&on_furniture_, &on_actors_, &remembered_}) flush(*queue);
+void SampleUpdater::finish(KeptTile& tile) {
+    for (Queue* queue : {&on_furniture_, &on_actors_, &remembered_}) flush(tile, *queue);
+    flush_lines();
 }
 
 /// What up to sixteen samples meet: each goes on to a queue, or is done.
@@ -71,7 +81,7 @@ void SampleUpdater::meet(KeptTile& tile, const TileActors& actors, std::span<con
         return t.sample->known == KeptSample::Known::light;
     });
     if (all_known && !actors.may_cover) {
-        for (const SampleTask& task : tasks) recall(actors, task);
+        for (const SampleTask& task : tasks) recall(tile, actors, task);
         return;
     }
     RayPacket rays;
@@ -90,9 +100,9 @@ void SampleUpdater::meet(KeptTile& tile, const TileActors& actors, std::span<con
     }
     for (std::size_t lane = 0; lane < tasks.size(); ++lane) {
         if (hits[lane].body != no_index)
-            look_at_actor(tasks[lane], rays.ray(lane), hits[lane]);
+            look_at_actor(tile, tasks[lane], rays.ray(lane), hits[lane]);
         else if (tasks[lane].sample->known == KeptSample::Known::light)
-            recall(actors, tasks[lane]);
+            recall(tile, actors, tasks[lane]);
         else
             look_at_furniture(tile, actors, tasks[lane], rays.ray(lane));
     }
@@ -139,34 +149,38 @@ void SampleUpdater::look_at_furniture(KeptTile& tile, const TileActors& actors, 
     if (!seen.takes_light()) return;
     sample.position = seen.position;
     tile.positions.add(seen.position);
-    add(on_furniture_, {task, seen.position, seen.normal, any_holds(actors, seen.position)});
+    add(tile, on_furniture_, {task, seen.position, seen.normal, any_holds(actors, seen.position)});
 }
 
 /// A sample that sees the furniture again, or still.
-void SampleUpdater::recall(const TileActors& actors, const SampleTask& task) {
+void SampleUpdater::recall(KeptTile& tile, const TileActors& actors, const SampleTask& task) {
     KeptSample& sample = *task.sample;
     sample.on_actor = no_index;
     sample.direct_now = sample.direct;
     if (max_channel(sample.reflectance) <= 0) return;
     const bool has_lines = sample.unblocked != 0 || lines_.count() > KeptSample::remembered_lines;
-    if (has_lines && any_holds(actors, sample.position))
-        add(remembered_, {task, sample.position, shading_normal(lit_, sample.hit()), true});
+    if (!has_lines || !any_holds(actors, sample.position)) return;
+    if (sample.first_line == no_index)
+        add(tile, remembered_, {task, sample.position, shading_normal(lit_, sample.hit()), true});
+    else
+        add_lines(tile, sample);
 }
 
-void SampleUpdater::look_at_actor(const SampleTask& task, const Ray& ray, const Hit& hit) {
+void SampleUpdater::look_at_actor(KeptTile& tile, const SampleTask& task, const Ray& ray, const Hit& hit) {
     task.sample->on_actor = static_cast<Index>(actor_points_.size());
     const ActorPoint& point = actor_points_.emplace_back(ActorPoint{look_at(lit_, ray, hit)});
-    if (point.seen.takes_light()) add(on_actors_, {task, point.seen.position, point.seen.normal, true});
+    if (point.seen.takes_light()) add(tile, on_actors_, {task, point.seen.position, point.seen.normal, true});
 }
 
-void SampleUpdater::add(Queue& queue, const Point& point) {
+void SampleUpdater::add(KeptTile& tile, Queue& queue, const Point& point) {
     queue.points[queue.count++] = point;
-    if (queue.count == lanes) flush(queue);
+    if (queue.count == lanes) flush(tile, queue);
 }
 
 /// Traces the shadow lines of a queue's points and so completes their samples.
-void SampleUpdater::flush(Queue& queue) {
+void SampleUpdater::flush(KeptTile& tile, Queue& queue) {
     if (queue.count == 0) return;
+    make_room_for_lines(tile, queue);
     std::array<Rgb, lanes> now{}, alone{};
     std::array<std::uint32_t, lanes> unblocked{};
     for (std::size_t lane = 0; lane < queue.count; ++lane)
@@ -185,6 +199,7 @@ void SampleUpdater::flush(Queue& queue) {
             scope == Scope::everything ? past : past & ~occluded_by_actors(queue, lines, past);
         for (std::size_t lane = 0; lane < queue.count; ++lane) {
             if (((past >> lane) & 1U) != 0) {
+                if (past_furniture) keep_line(tile, *queue.points[lane].task.sample, i, lines, lane);
                 alone[lane] += lines.gain[lane];
                 if (i < KeptSample::remembered_lines) unblocked[lane] |= 1U << i;
             }
@@ -202,6 +217,39 @@ void SampleUpdater::flush(Queue& queue) {
         sample.unblocked = unblocked[lane];
     }
     queue.count = 0;
+}
+
+/// For samples that are looked at a second time: others never are, and need none.
+void SampleUpdater::make_room_for_lines(KeptTile& tile, const Queue& queue) const {
+    if (queue.lines != Lines::past_furniture || lines_.count() > KeptSample::remembered_lines) return;
+    for (std::size_t lane = 0; lane < queue.count; ++lane) {
+        KeptSample& sample = *queue.points[lane].task.sample;
+        sample.first_line = static_cast<Index>(tile.lines.size());
+        tile.lines.resize(tile.lines.size() + static_cast<std::size_t>(std::popcount(sample.unblocked)));
+    }
+}
+
+void SampleUpdater::add_lines(const KeptTile& tile, KeptSample& sample) {
+    sample.direct_now = Rgb(0);
+    const auto count = static_cast<std::size_t>(std::popcount(sample.unblocked));
+    for (const KeptLine& line : std::span(tile.lines).subspan(sample.first_line, count)) {
+        const std::size_t lane = kept_lines_.rays.count++;
+        kept_lines_.rays.set(lane, {sample.position, line.direction, line.far_m});
+        kept_lines_.gain[lane] = line.gain;
+        kept_lines_.alive |= 1U << lane;
+        sample_of_line_[lane] = &sample;
+        if (kept_lines_.rays.count == lanes) flush_lines();
+    }
+}
+
+/// A sample's lines are taken in their order, so that it comes to the same sum as with others between.
+void SampleUpdater::flush_lines() {
+    if (kept_lines_.rays.count == 0) return;
+    const std::uint32_t hidden = occluded(kept_lines_, Scope::actors);
+    for (std::size_t lane = 0; lane < kept_lines_.rays.count; ++lane)
+        if (((hidden >> lane) & 1U) == 0) sample_of_line_[lane]->direct_now += kept_lines_.gain[lane];
+    kept_lines_.rays.count = 0;
+    kept_lines_.alive = 0;
 }
 
 /// Lanes whose line i does not end on the furniture, as far as is known.

@@ -15,6 +15,13 @@
 
 namespace afterglow {
 
+/// A shadow line that gets past the furniture, from its sample's position on.
+struct KeptLine {
+    Vec3 direction{0};
+    float far_m = 0;  ///< as in ShadowLinePacket, likewise
+    Rgb gain{0};
+};
+
 /// One camera sample of a picture that is kept: what it would show without actors, which stays, and how that
 /// is lit now. Its ray follows from the pixel and is not stored.
 struct KeptSample {
@@ -37,6 +44,8 @@ struct KeptSample {
     Rgb direct{0};                ///< irradiance by its shadow lines past the furniture, W/m²
     std::uint32_t unblocked = 0;  ///< bit i: shadow line i brings light past the furniture
     std::uint32_t first_weight = 0;
+    Index first_line =
+        no_index;  ///< where the lines that bring light stand; no_index: not looked at again yet
     std::uint8_t weights = 0;
     Side side = Side::front;
     Known known = Known::nothing;
@@ -66,6 +75,7 @@ struct KeptTile {
     std::array<bool, pixels> shows_further{};   ///< whether they are in the picture, and up to date
     std::vector<PatchWeight> weights;           ///< of all samples
     std::vector<Index> patches;                 ///< that `weights` name, rising
+    std::vector<KeptLine> lines;                ///< of samples that actors' shadows may reach
     Box positions;                              ///< of samples that take light
 
     KeptTile() { first_further.fill(no_index); }
@@ -96,8 +106,8 @@ class SampleUpdater {
     void begin_tile() { actor_points_.clear(); }
     /// What the samples see now, whatever it was. Some are done only by `finish`.
     void update(KeptTile& tile, const TileActors& actors, std::span<const SampleTask> tasks);
-    /// To be called before what has been updated is read.
-    void finish();
+    /// To be called before what has been updated is read, with the tile that was.
+    void finish(KeptTile& tile);
     /// What a sample gives to its pixel: one that has been updated since its tile began, or that sees the
     /// furniture as it did before.
     [[nodiscard]] SampleLight light(const KeptTile& tile, const KeptSample& sample) const;
@@ -127,11 +137,14 @@ class SampleUpdater {
     void meet(KeptTile& tile, const TileActors& actors, std::span<const SampleTask> tasks);
     void meet_furniture(std::span<const SampleTask> tasks, const RayPacket& rays);
     void look_at_furniture(KeptTile& tile, const TileActors& actors, const SampleTask& task, const Ray& ray);
-    void recall(const TileActors& actors, const SampleTask& task);
-    void look_at_actor(const SampleTask& task, const Ray& ray, const Hit& hit);
+    void recall(KeptTile& tile, const TileActors& actors, const SampleTask& task);
+    void look_at_actor(KeptTile& tile, const SampleTask& task, const Ray& ray, const Hit& hit);
 
-    void add(Queue& queue, const Point& point);
-    void flush(Queue& queue);
+    void add(KeptTile& tile, Queue& queue, const Point& point);
+    void flush(KeptTile& tile, Queue& queue);
+    void make_room_for_lines(KeptTile& tile, const Queue& queue) const;
+    void add_lines(const KeptTile& tile, KeptSample& sample);
+    void flush_lines();
     [[nodiscard]] std::uint32_t worth_tracing(const Queue& queue, std::size_t i) const;
     std::uint32_t occluded(const ShadowLinePacket& lines, Scope scope);
     std::uint32_t occluded_by_actors(const Queue& queue, const ShadowLinePacket& all, std::uint32_t among);
@@ -140,6 +153,8 @@ class SampleUpdater {
     const CameraSamples& camera_;
     const ShadowLines& lines_;
     Queue on_furniture_, on_actors_, remembered_;
+    ShadowLinePacket kept_lines_{};  // that wait likewise, of any samples
+    std::array<KeptSample*, lanes> sample_of_line_{};
     ShadowPacket shadows_;
     std::vector<ActorPoint> actor_points_;  // of the tile at hand
     std::uint64_t rays_traced_ = 0;

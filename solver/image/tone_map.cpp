@@ -14,6 +14,7 @@ namespace {
 constexpr double middle_grey = 0.18;
 constexpr double trimmed_share = 0.1;  // at each end
 constexpr double largest_ev = 64;
+constexpr std::size_t pixels_per_chunk = 4096;
 
 void require_finite(const Picture& picture, std::size_t pixel) {
     const Rgb& c = picture.pixels[pixel];
@@ -86,17 +87,19 @@ float automatic_exposure_ev(const Picture& picture) {
     return static_cast<float>(std::clamp(std::log2(middle_grey) - mean, -largest_ev, largest_ev));
 }
 
-std::vector<std::uint8_t> to_srgb(const Picture& picture, float exposure_ev) {
+std::vector<std::uint8_t> to_srgb(const Picture& picture, float exposure_ev, const Context& context) {
     static const NearestCode code;
     const double gain = std::exp2(double{exposure_ev});
     std::vector<std::uint8_t> rgb(picture.pixels.size() * 3);
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-        require_finite(picture, i);
-        const Rgb& c = picture.pixels[i];
-        rgb[3 * i] = code(double{c.r} * gain);
-        rgb[3 * i + 1] = code(double{c.g} * gain);
-        rgb[3 * i + 2] = code(double{c.b} * gain);
-    }
+    context.for_chunks(picture.pixels.size(), pixels_per_chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            require_finite(picture, i);
+            const Rgb& c = picture.pixels[i];
+            rgb[3 * i] = code(double{c.r} * gain);
+            rgb[3 * i + 1] = code(double{c.g} * gain);
+            rgb[3 * i + 2] = code(double{c.b} * gain);
+        }
+    });
     return rgb;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "solver/base/context.h"
 #include "solver/base/pixels.h"
 
 namespace afterglow {
@@ -23,7 +24,7 @@ float automatic_exposure_ev(const Picture& picture);
 
 /// 8-bit sRGB (width × height × 3) of a picture of linear radiance, brightened by 2^exposure_ev and rounded
 /// to the nearest code; what is brighter than white is clipped channel by channel. Errors: std::logic_error
-/// naming a pixel that is not finite, since only a defect of ours makes one. Thread-safety: pure.
-std::vector<std::uint8_t> to_srgb(const Picture& picture, float exposure_ev);
+/// naming a pixel that is not finite, since only a defect of ours makes one; cancelled. Thread-safety: pure.
+std::vector<std::uint8_t> to_srgb(const Picture& picture, float exposure_ev, const Context& context);
 
 }  // namespace afterglow

@@ -41,8 +41,8 @@ float find_exposure(SequenceState::Parts& parts, const Context& context) {
 /// Hands a frame's pictures to the caller, numbered.
 class Publisher {
   public:
-    Publisher(const SequenceState::Parts& parts, int frame, const RevisionSink& sink)
-        : parts_(parts), frame_(frame), sink_(sink) {}
+    Publisher(const SequenceState::Parts& parts, int frame, const RevisionSink& sink, const Context& context)
+        : parts_(parts), frame_(frame), sink_(sink), context_(context) {}
 
     [[nodiscard]] bool wants_preliminary() const {
         return sink_ && parts_.config.revisions == Revisions::all;
@@ -67,7 +67,7 @@ class Publisher {
         revision.frame = frame_;
         revision.revision = ++count_;
         revision.residual = residual;
-        revision.srgb = to_srgb(radiance, *parts_.exposure_ev);
+        revision.srgb = to_srgb(radiance, *parts_.exposure_ev, context_);
         revision.radiance = std::move(radiance);
         sink_(revision);
     }
@@ -75,6 +75,7 @@ class Publisher {
     const SequenceState::Parts& parts_;
     int frame_;
     const RevisionSink& sink_;
+    const Context& context_;
     int count_ = 0;
 };
 
@@ -167,7 +168,7 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     parts.statistics.exposure_ev = parts.exposure_ev;
 
     FrameRefinement frame(parts, frame_number);
-    Publisher publisher(parts, frame_number, on_revision);
+    Publisher publisher(parts, frame_number, on_revision, context);
     const Index all = parts.sight->lines_per_patch();
     if (publisher.wants_preliminary()) {
         const Context part = context.part(0.1, 0.6);

@@ -16,6 +16,7 @@ namespace {
 // How much longer each window is than the one before it: work that is done once a window whatever its length
 // soon does not count, and no frame but the first few waits much longer than those before it.
 constexpr int growth = 4;
+constexpr std::size_t events_per_chunk = 8192;
 
 /// The events of some frames, by the ranges of directions in which they were asked for.
 struct Window {
@@ -61,7 +62,7 @@ class Events : public VisibilityStrategy {
         else if (!shown_)
             show_again(scene, visible);
         else if (*shown_ != scene.frame)
-            move_to(scene, visible);
+            move_to(scene, visible, context);
         if (range.last > window_->directions) extend(scene, range.last, visible, context);
         shown_ = scene.frame;
         std::uint64_t rays = window_->looks_along_own ? 0 : own_.update(scene, range, visible, context);
@@ -156,31 +157,39 @@ class Events : public VisibilityStrategy {
     }
 
     /// Frame by frame from the one shown to the one asked for.
-    void move_to(const LineScene& scene, VisibleLines& visible) {
+    void move_to(const LineScene& scene, VisibleLines& visible, const Context& context) {
+        // A stop in the middle leaves lines of which nobody knows what they show.
+        const int shown = *std::exchange(shown_, std::nullopt);
+        auto changes = take_changes();
+        changes_known_ = false;
         const int first = window_->actors.frames().first;
-        for (int f = *shown_ + 1; f <= scene.frame; ++f) {
-            show_all(f - first, &LineEvent::to, scene, visible);
-            if (changes_known_) note_changes(f - first, &LineEvent::from, &LineEvent::to);
-        }
-        for (int f = *shown_; f > scene.frame; --f) {
-            show_all(f - first, &LineEvent::from, scene, visible);
-            if (changes_known_) note_changes(f - first, &LineEvent::to, &LineEvent::from);
-        }
+        for (int f = shown + 1; f <= scene.frame; ++f)
+            pass(f - first, &LineEvent::from, &LineEvent::to, scene, visible, changes, context);
+        for (int f = shown; f > scene.frame; --f)
+            pass(f - first, &LineEvent::to, &LineEvent::from, scene, visible, changes, context);
+        changes_known_ = changes.has_value();
+        if (changes) changes_ = std::move(*changes);
     }
 
     using Shown = Index LineEvent::*;
-    void note_changes(int f, Shown from, Shown to) {
-        for (const LineEvents& events : window_->sight)
-            for (const LineEvent& event : events.at(f))
-                changes_.sight.push_back({event.line, event.*from, event.*to});
-        for (const LineEvent& event : window_->light.at(f)) changes_.light.push_back(event.line);
-    }
-
-    /// Shows one side of a frame's events: what they lead to or, to go back, what they come from.
-    void show_all(int f, Shown shown, const LineScene& scene, VisibleLines& visible) const {
-        for (const LineEvents& events : window_->sight) show_patches(events.at(f), shown, visible);
-        for (const LineEvents& events : window_->own) show_own(events.at(f), shown, scene, visible);
-        show_lamps(window_->light.at(f), shown, scene, visible);
+    /// Passes a frame's events, from one side to the other, and adds what changes where that is asked for.
+    void pass(int f, Shown from, Shown to, const LineScene& scene, VisibleLines& visible,
+              std::optional<LineChanges>& changes, const Context& context) const {
+        for (const LineEvents& range : window_->sight) {
+            const std::span<const LineEvent> events = range.at(f);
+            const std::size_t before = changes ? changes->sight.size() : 0;
+            if (changes) changes->sight.resize(before + events.size());
+            // No line has two events in a frame.
+            context.for_chunks(events.size(), events_per_chunk, [&](std::size_t begin, std::size_t end) {
+                show_patches(events.subspan(begin, end - begin), to, visible);
+                for (std::size_t k = begin; changes && k < end; ++k)
+                    changes->sight[before + k] = {events[k].line, events[k].*from, events[k].*to};
+            });
+        }
+        for (const LineEvents& events : window_->own) show_own(events.at(f), to, scene, visible);
+        show_lamps(window_->light.at(f), to, scene, visible);
+        for (const LineEvent& event : window_->light.at(f))
+            if (changes) changes->light.push_back(event.line);
     }
     static void show_patches(std::span<const LineEvent> events, Shown shown, VisibleLines& visible) {
         for (const LineEvent& event : events) visible.patch[event.line] = event.*shown;

@@ -40,6 +40,18 @@ def work(results):
                   "picture apart from `full`"], rows)
 
 
+def errors(results):
+    """What the last pictures of the families are off by, with the interval of the first method's."""
+    rows = []
+    for scene in (f"{family}={value}" for family, values in results.form.values.items() for value in values):
+        found = {way: error for way in [*cells.methods, "auto"] if (error := results.error("families", scene, way))}
+        if "full" in found:
+            _, low, high = found["full"]
+            rows.append([scene, f"{share(found['full'][0])} ({share(low)} to {share(high)})",
+                         *(share(found[way][0]) if way in found else "" for way in [*cells.methods, "auto"] if way != "full")])
+    return table(["scene", "`full` (95 %)", *(f"`{way}`" for way in [*cells.methods, "auto"] if way != "full")], rows)
+
+
 def axes(results):
     rows = []
     scenes = ("actors=3", "moving=12", "living-room")
@@ -123,8 +135,7 @@ def quality(results):
 def judged(results):
     """Asked errors: (scene, asked, error, low, high, seconds, best fixed setting of the same error and its seconds)."""
     out = []
-    for k in range(1, results.form.drawn + 1):
-        scene = f"drawn={k}"
+    for scene in (f"drawn={k}" for k in results.form.drawn):
         fixed = [(row["total_s"], setting, results.error("asked", scene, "fixed", setting))
                  for (s, way, setting, _), row in results.chapter("asked").items() if s == scene and way == "fixed"]
         for asked in (0.05, 0.02):
@@ -172,6 +183,6 @@ def asked_summary(results):
     return table(["asked", "", "within", "worst error / asked", "median time ratio", "worst time ratio", "scenes where no fixed setting reaches the error"], rows)
 
 
-chapter_of = {"gains": "families", "work": "families", "axes": "axes", "coherences": "coherences", "lines": "parts", "orders": "parts",
+chapter_of = {"gains": "families", "work": "families", "errors": "families", "axes": "axes", "coherences": "coherences", "lines": "parts", "orders": "parts",
               "factors": "parts", "mesh": "mesh", "quality": "quality", "flicker": "flicker", "asked_summary": "asked", "missed": "asked", "asked": "asked"}
 all_tables = {name: globals()[name] for name in chapter_of}

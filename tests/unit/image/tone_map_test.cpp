@@ -65,7 +65,7 @@ TEST(ToSrgb, GivesTheCodeNearestToTheCurveAlsoBesideWhereCodesBegin) {
         picture.pixels[k / 3][static_cast<int>(k % 3)] = values[k];
 
     for (const float exposure_ev : {0.0F, 0.7F}) {
-        const auto rgb = to_srgb(picture, exposure_ev);
+        const auto rgb = to_srgb(picture, exposure_ev, Context(1));
         for (std::size_t k = 0; k < values.size(); ++k) {
             const double brightened = double{values[k]} * std::exp2(double{exposure_ev});
             ASSERT_EQ(rgb[k], std::lround(255 * srgb_encoded(brightened))) << values[k];
@@ -80,7 +80,7 @@ TEST(ToSrgb, InvertsEveryCode) {
         const double linear = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
         ramp.at(i, 0) = Rgb(static_cast<float>(linear));
     }
-    const auto rgb = to_srgb(ramp, 0);
+    const auto rgb = to_srgb(ramp, 0, Context(1));
     ASSERT_EQ(rgb.size(), 256U * 3);
     for (std::size_t i = 0; i < rgb.size(); ++i) EXPECT_EQ(rgb[i], i / 3);
 }
@@ -89,14 +89,14 @@ TEST(ToSrgb, ClipsAndKeepsChannelsApart) {
     Picture picture(2, 1);
     picture.at(0, 0) = Rgb(-1, 0, 7);
     picture.at(1, 0) = Rgb(1, 0.5F, std::numeric_limits<float>::max());
-    EXPECT_THAT(to_srgb(picture, 0), ElementsAre(0, 0, 255, 255, 188, 255));
+    EXPECT_THAT(to_srgb(picture, 0, Context(1)), ElementsAre(0, 0, 255, 255, 188, 255));
 }
 
 TEST(ToSrgb, AStopIsAFactorOfTwo) {
     const Picture picture = random_picture(1);
     Picture doubled = picture;
     for (Rgb& pixel : doubled.pixels) pixel *= 2.0F;
-    EXPECT_EQ(to_srgb(picture, -1), to_srgb(doubled, -2));
+    EXPECT_EQ(to_srgb(picture, -1, Context(1)), to_srgb(doubled, -2, Context(1)));
 }
 
 TEST(ToSrgb, NamesAPixelThatIsNotFinite) {
@@ -104,7 +104,8 @@ TEST(ToSrgb, NamesAPixelThatIsNotFinite) {
          {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
         Picture picture = filled(5, 4, Rgb(1));
         picture.at(3, 2).g = bad;
-        EXPECT_THAT([&] { to_srgb(picture, 0); }, ThrowsMessage<std::logic_error>(HasSubstr("(3, 2)")));
+        EXPECT_THAT([&] { to_srgb(picture, 0, Context(1)); },
+                    ThrowsMessage<std::logic_error>(HasSubstr("(3, 2)")));
         EXPECT_THAT([&] { automatic_exposure_ev(picture); },
                     ThrowsMessage<std::logic_error>(HasSubstr("(3, 2)")));
     }
@@ -113,7 +114,7 @@ TEST(ToSrgb, NamesAPixelThatIsNotFinite) {
 TEST(AutomaticExposure, MakesAnEvenWallMidBright) {
     for (const float level : {1e-6F, 0.02F, 0.18F, 5.0F, 3e4F}) {
         const Picture wall = filled(8, 8, Rgb(level));
-        const auto rgb = to_srgb(wall, automatic_exposure_ev(wall));
+        const auto rgb = to_srgb(wall, automatic_exposure_ev(wall), Context(1));
         // 0.18 encodes to 0.4613 of 255, whatever the wall's level.
         for (const auto value : rgb) EXPECT_EQ(value, 118) << level;
     }
