@@ -80,6 +80,7 @@ void run_render(std::span<const char* const> arguments, const afterglow::Interru
         std::cout << help->text;
         return;
     }
+    keep_freed_memory();
     afterglow::render_command(std::get<afterglow::RenderOptions>(asked), interrupt.token(), started);
 }
 
@@ -106,7 +107,6 @@ int main(int argc, char** argv) {
     } catch (const std::exception& e) {
         return complain(e.what(), status_bad_input);
     }
-    keep_freed_memory();
     const afterglow::Interrupt interrupt;
     try {
         if (command == "render")

@@ -1,10 +1,13 @@
 #include "service/work/job_run.h"
 
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "service/base/overloaded.h"
 #include "solver/scene/named.h"
 #include "solver/sequence/furniture_edits.h"
+#include "solver/sequence/sketch.h"
 
 namespace afterglow {
 
@@ -38,25 +41,6 @@ EditOutcome apply_to(SequenceState& state, const std::string& camera, const Edit
     return std::visit(change, edit.what);
 }
 
-class SolverRun : public JobRun {
-  public:
-    SolverRun(SequenceState state, std::string camera)
-        : state_(std::move(state)), camera_(std::move(camera)) {}
-
-    FrameStatistics step(int frame, const RevisionSink& on_revision, const Context& context) override {
-        return afterglow::step(state_, frame, on_revision, context);
-    }
-    EditOutcome apply(const Edit& edit, const Context& context) override {
-        return apply_to(state_, camera_, edit, context);
-    }
-    [[nodiscard]] SequenceStatistics statistics() const override { return state_.statistics(); }
-    [[nodiscard]] Warnings warnings() const override { return state_.warnings(); }
-
-  private:
-    SequenceState state_;
-    std::string camera_;  ///< as the job was submitted with
-};
-
 /// The edits of a job, one after the other.
 std::vector<const Edit*> edits_of(const Job& job) {
     std::vector<const Edit*> edits;
@@ -64,6 +48,58 @@ std::vector<const Edit*> edits_of(const Job& job) {
         for (const Edit& edit : request.edits) edits.push_back(&edit);
     return edits;
 }
+
+/// Whoever watches a job sees a sketch of its first frame before there are patches.
+class SolverRun : public JobRun {
+  public:
+    /// `world` has the job's edits, but for those of the camera.
+    SolverRun(const Job& job, World world, SequenceConfig config, const Context& context)
+        : world_(std::move(world)), config_(std::move(config)) {
+        for (const Edit* edit : edits_of(job))
+            if (std::holds_alternative<CameraEdit>(edit->what)) cameras_.push_back(*edit);
+        if (config_.revisions == Revisions::all)
+            sketched_ = with_cameras(make_sketch_state(world_, config_, context), context);
+        else
+            prepare(context);
+    }
+
+    FrameStatistics step(int frame, const RevisionSink& on_revision, const Context& context) override {
+        if (state_) return afterglow::step(*state_, frame, on_revision, context);
+        on_revision(sketch(*sketched_, frame, context.part(0, 0.01)));
+        prepare(context.part(0.01, 0.05));
+        const auto later = [&](Revision revision) {
+            ++revision.revision;
+            on_revision(revision);
+        };
+        return afterglow::step(*state_, frame, later, context.part(0.05, 1));
+    }
+    EditOutcome apply(const Edit& edit, const Context& context) override {
+        prepare(context);
+        return apply_to(*state_, config_.camera, edit, context);
+    }
+    [[nodiscard]] SequenceStatistics statistics() const override {
+        return state_ ? state_->statistics() : SequenceStatistics{};
+    }
+    [[nodiscard]] Warnings warnings() const override { return state_ ? state_->warnings() : Warnings{}; }
+
+  private:
+    /// A stop in the middle leaves everything for another attempt.
+    void prepare(const Context& context) {
+        if (state_) return;
+        state_ = with_cameras(make_state(world_, config_, context), context);
+        sketched_.reset();
+        world_ = {};
+    }
+    [[nodiscard]] SequenceState with_cameras(SequenceState state, const Context& context) const {
+        for (const Edit& edit : cameras_) apply_to(state, config_.camera, edit, context);
+        return state;
+    }
+
+    World world_;  ///< until `state_` is made from it
+    SequenceConfig config_;
+    std::vector<Edit> cameras_;
+    std::optional<SequenceState> sketched_, state_;
+};
 
 }  // namespace
 
@@ -74,12 +110,8 @@ std::unique_ptr<JobRun> solver_run(const Job& job, World world, const std::files
     config.frames_expected = job.frame_count();
     // An edited scene's own exposure would be another than that of the pictures there are.
     if (!config.exposure_ev) config.exposure_ev = job.statistics.exposure_ev;
-    const auto edits = edits_of(job);
-    for (const Edit* edit : edits) apply(world, *edit);
-    auto run = std::make_unique<SolverRun>(make_state(std::move(world), config, context), config.camera);
-    for (const Edit* edit : edits)
-        if (std::holds_alternative<CameraEdit>(edit->what)) run->apply(*edit, context);
-    return run;
+    for (const Edit* edit : edits_of(job)) apply(world, *edit);
+    return std::make_unique<SolverRun>(job, std::move(world), std::move(config), context);
 }
 
 }  // namespace afterglow

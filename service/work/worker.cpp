@@ -9,7 +9,7 @@ namespace afterglow {
 namespace {
 /// Early revisions of a job's first frame are never skipped: whoever waits for a job sees at once that it
 /// lives.
-constexpr int early_revisions = 3;
+constexpr int early_revisions = 4;
 
 bool is_active(JobState state) {
     return state == JobState::queued || state == JobState::running;

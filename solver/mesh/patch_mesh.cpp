@@ -163,7 +163,7 @@ bool PatchMesh::slipped(Index on_surface, Side on, const Vec3& position, const V
                                    grid.cell_at(just_before(on_surface, position, direction)));
 }
 
-PatchPoint PatchMesh::point_on(Index patch, float s, float t) const {
+PatchPoint PatchMesh::point_on_part(Index patch, float s, float t) const {
     const std::size_t first = first_fragment[patch], count = first_fragment[patch + 1] - first;
     return point_within({origin[patch], normal[patch]}, edge_u[patch], edge_v[patch],
                         {fragments.data() + first, count}, s, t);

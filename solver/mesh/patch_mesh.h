@@ -98,7 +98,14 @@ struct PatchMesh {
     [[nodiscard]] bool slipped(Index on_surface, Side on, const Vec3& position, const Vec3& direction) const;
 
     /// The point that (s, t) in [0,1)² stands for; uniform over the area but for what touches a cut.
-    [[nodiscard]] PatchPoint point_on(Index patch, float s, float t) const;
+    [[nodiscard]] PatchPoint point_on(Index patch, float s, float t) const {
+        // Asked for every line; most patches are whole.
+        if (first_fragment[patch] != first_fragment[patch + 1]) return point_on_part(patch, s, t);
+        return {origin[patch] + s * edge_u[patch] + t * edge_v[patch], normal[patch]};
+    }
+
+  private:
+    [[nodiscard]] PatchPoint point_on_part(Index patch, float s, float t) const;
 };
 
 /// Which sides of which surfaces get patches.

@@ -1,6 +1,7 @@
 #include "solver/visibility/sight_lines.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 
 namespace afterglow {
@@ -45,9 +46,15 @@ void SightLines::rays(std::size_t block, Index direction, const Pose& pose, RayP
     const Sample4 sample = points_.at(direction % different_lines(b), mixed(seed_, block));
     const Vec3 local = cosine_direction(sample[0], sample[1]);
     out.count = b.count;
+    Vec3 normal(0), direction_in_world(0);
     for (Index lane = 0; lane < b.count; ++lane) {
         const PatchPoint point = mesh_->point_on(b.first + lane, sample[2], sample[3]);
-        Ray ray{point.position + lift_m_ * point.normal, Frame(point.normal).to_world(local)};
+        // Neighbours mostly lie in one plane.
+        if (point.normal != normal) {
+            normal = point.normal;
+            direction_in_world = Frame(normal).to_world(local);
+        }
+        Ray ray{point.position + lift_m_ * normal, direction_in_world};
         if (b.body != furniture) {
             ray.origin = pose.point(ray.origin);
             ray.direction = pose.direction(ray.direction);
@@ -81,6 +88,39 @@ Index target_of(const Hit& hit, const Ray& ray, const PatchMesh& mesh, const Ray
 }
 
 namespace {
+
+/// What a packet's lines see. Neighbours mostly see one side of one surface.
+void targets_of(const HitPacket& hits, const RayPacket& rays, const PatchMesh& mesh, const RayCaster& caster,
+                std::span<Index> out) {
+    alignas(64) std::array<float, 16> x, y, z;
+    for (std::size_t k = 0; k < 16; ++k) {
+        const float distance = k < rays.count ? hits[k].distance : 0;
+        x[k] = rays.origin_x[k] + distance * rays.direction_x[k];
+        y[k] = rays.origin_y[k] + distance * rays.direction_y[k];
+        z[k] = rays.origin_z[k] + distance * rays.direction_z[k];
+    }
+    Index surface = no_index;
+    Side side = Side::front;
+    const CellTree* tree = nullptr;
+    const SurfaceGrid* grid = nullptr;
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        const Hit& hit = hits[k];
+        if (hit.body != furniture) {
+            out[k] = target_of(hit, rays.ray(k), mesh, caster);
+            continue;
+        }
+        const Index s = mesh.surfaces.of_triangle[furniture][hit.triangle];
+        if (s != surface || hit.side != side) {
+            surface = s;
+            side = hit.side;
+            tree = &mesh.trees[s][static_cast<std::size_t>(side)];
+            grid = &mesh.grids[s];
+            if (grid->cells_u == 0 || tree->empty() || !tree->dividers.empty()) tree = nullptr;
+        }
+        out[k] = tree == nullptr ? no_index : tree->leaf_at(grid->cell_at(Vec3(x[k], y[k], z[k]))).item;
+        if (out[k] == no_index) out[k] = target_of(hit, rays.ray(k), mesh, caster);
+    }
+}
 
 /// What is known of some lines goes for others, too.
 void repeat(std::size_t to, std::size_t from, Index count, const LineSinks& sinks) {
@@ -117,10 +157,9 @@ std::uint64_t trace_lines(const SightLines& lines, const PatchMesh& mesh, const 
                         caster.nearest(rays, scope, hits);
                     else
                         caster.nearest_from(block.body, rays, hits);
-                    for (Index lane = 0; lane < block.count; ++lane) {
-                        sinks.patch[first + lane] = target_of(hits[lane], rays.ray(lane), mesh, caster);
-                        if (!sinks.distance.empty()) sinks.distance[first + lane] = hits[lane].distance;
-                    }
+                    targets_of(hits, rays, mesh, caster, sinks.patch.subspan(first, block.count));
+                    for (Index lane = 0; lane < block.count && !sinks.distance.empty(); ++lane)
+                        sinks.distance[first + lane] = hits[lane].distance;
                     count += block.count;
                 }
             }

@@ -87,6 +87,49 @@ TEST_F(ChildRunTest, GivesTheSameBitsAsARunHere) {
     EXPECT_EQ(there->warnings().size(), here->warnings().size());
 }
 
+TEST_F(ChildRunTest, AWatchedRunBeginsWithASketchOfItsFirstFrame) {
+    const auto run = run_here();
+    for (const int frame : {1, 2}) {
+        std::vector<Revision> shown;
+        run->step(
+            frame, [&](const Revision& r) { shown.push_back(r); }, Context(2));
+        for (std::size_t k = 0; k < shown.size(); ++k) {
+            EXPECT_EQ(shown[k].revision, static_cast<int>(k) + 1);
+            EXPECT_EQ(shown[k].frame, frame);
+            EXPECT_EQ(shown[k].final, k + 1 == shown.size());
+        }
+        // Sketch, few lines, more, all; later frames follow at once.
+        EXPECT_EQ(shown.size(), frame == 1 ? 5U : 1U);
+    }
+    job_.settings.sequence.revisions = Revisions::final_only;
+    int shown = 0;
+    run_here()->step(
+        0, [&](const Revision&) { ++shown; }, Context(2));
+    EXPECT_EQ(shown, 1);
+}
+
+TEST_F(ChildRunTest, ARunStoppedBeforeItHasPatchesCanGoOn) {
+    const auto stopped = run_here(), other = run_here();
+    std::stop_source stop;
+    int shown = 0;
+    EXPECT_THROW(stopped->step(
+                     0,
+                     [&](const Revision&) {
+                         ++shown;
+                         stop.request_stop();
+                     },
+                     Context(2, stop.get_token())),
+                 Error);
+    EXPECT_EQ(shown, 1);
+    const auto final_picture = [](JobRun& run) {
+        Picture last;
+        run.step(
+            0, [&](const Revision& r) { last = r.radiance; }, Context(2));
+        return last.pixels;
+    };
+    EXPECT_EQ(final_picture(*stopped), final_picture(*other));
+}
+
 TEST_F(ChildRunTest, ErrorsKeepTheirTypes) {
     job_.settings.sequence.camera = "nobody's";
     try {
