@@ -8,6 +8,7 @@
 
 #include "solver/base/error.h"
 #include "solver/formfactor/polygon_pair.h"
+#include "solver/visibility/block_lines.h"
 
 namespace afterglow {
 
@@ -269,11 +270,12 @@ class RayCast final : public FormFactorMethod {
         const Index lane = patch - blocks[block].first;
         FormFactorRow out{std::vector<double>(scene.mesh.size(), 0.0), 0, 0};
         const double weight = 1.0 / lines_->lines_per_patch();
-        RayPacket of_block, rays;
+        const BlockLines of_block(*lines_, block, scene.placed.pose(blocks[block].body));
+        RayPacket all, rays;
         HitPacket hits;
         for (Index d = 0; d < lines_->lines_per_patch(); ++d) {
-            lines_->rays(block, d, scene.placed.pose(blocks[block].body), of_block);
-            rays.set(rays.count++, of_block.ray(lane));
+            of_block.rays(d, all);
+            rays.set(rays.count++, all.ray(lane));
             if (rays.count < 16 && d + 1 < lines_->lines_per_patch()) continue;
             scene.placed.nearest(rays, Scope::everything, hits);
             for (Index k = 0; k < rays.count; ++k)

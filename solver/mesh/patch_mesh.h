@@ -97,10 +97,14 @@ struct PatchMesh {
     /// ray was just before: the ray slipped through where the two touch, and no patch can be told.
     [[nodiscard]] bool slipped(Index on_surface, Side on, const Vec3& position, const Vec3& direction) const;
 
+    /// Whether a patch is a rectangle.
+    [[nodiscard]] bool is_whole(Index patch) const {
+        return first_fragment[patch] == first_fragment[patch + 1];
+    }
     /// The point that (s, t) in [0,1)² stands for; uniform over the area but for what touches a cut.
     [[nodiscard]] PatchPoint point_on(Index patch, float s, float t) const {
         // Asked for every line; most patches are whole.
-        if (first_fragment[patch] != first_fragment[patch + 1]) return point_on_part(patch, s, t);
+        if (!is_whole(patch)) return point_on_part(patch, s, t);
         return {origin[patch] + s * edge_u[patch] + t * edge_v[patch], normal[patch]};
     }
 

@@ -5,6 +5,8 @@
 #include <bit>
 #include <utility>
 
+#include "solver/visibility/block_lines.h"
+
 namespace afterglow {
 
 namespace {
@@ -77,12 +79,13 @@ std::uint64_t BackBuffer::look(const LineScene& scene, std::size_t block, const 
     const auto to = static_cast<std::ptrdiff_t>(scene.sight.line(b, range.last, 0));
     std::copy(background.patch.begin() + from, background.patch.begin() + to, visible.patch.begin() + from);
     std::uint64_t traced = 0;
+    const BlockLines of_block(scene.sight, block, Pose{});
     LinePacket lines;
     for_due_packets(
         encounters_[block].sight, range, times_.slice_at(clock_.time_of(scene.frame)),
         [&](Index direction, std::span<const Encounter> due) {
             const std::size_t first = scene.sight.line(b, direction, 0);
-            scene.sight.rays(block, direction, Pose{}, lines.rays);
+            of_block.rays(direction, lines.rays);
             std::copy_n(background.distance.begin() + static_cast<std::ptrdiff_t>(first), b.count,
                         lines.rays.far.begin());
             lines.prepare();

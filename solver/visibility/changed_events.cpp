@@ -4,6 +4,7 @@
 #include <atomic>
 #include <iterator>
 
+#include "solver/visibility/block_lines.h"
 #include "solver/visibility/line_tests.h"
 
 namespace afterglow {
@@ -18,22 +19,24 @@ bool meets_any(LinePacket& packet, std::span<const Box> boxes) {
                        [&](const Box& box) { return lanes_through(packet, box) != 0; });
 }
 
-/// Calls `meets(block, packet in it)` for packets [first, last) of every static block, `width` to a block.
-template <class Meets>
+/// Asks `in_block(b)`, of every static block, which of packets [first, last) of its `width` are met.
+template <class InBlock>
 MetPackets packets_where(const EventScene& scene, Index first, Index last, Index width,
-                         const Context& context, const Meets& meets) {
+                         const Context& context, const InBlock& in_block) {
     const std::size_t blocks = scene.sight.static_blocks();
     MetPackets out{PacketMask(blocks * width, 0), 0, blocks * (last - first)};
     std::atomic<std::size_t> met = 0;
     context.for_chunks(blocks, blocks_per_chunk, [&](std::size_t begin, std::size_t end) {
         LinePacket packet;
         std::size_t here = 0;
-        for (std::size_t b = begin; b < end; ++b)
+        for (std::size_t b = begin; b < end; ++b) {
+            const auto meets = in_block(b);
             for (Index d = first; d < last; ++d)
-                if (meets(b, d, packet)) {
+                if (meets(d, packet)) {
                     out.mask[b * width + d] = 1;
                     ++here;
                 }
+        }
         met += here;
     });
     out.met = met;
@@ -44,31 +47,35 @@ MetPackets packets_where(const EventScene& scene, Index first, Index last, Index
 
 MetPackets sight_packets_meeting(const EventScene& scene, const DirectionRange& range,
                                  std::span<const Box> boxes, const Context& context) {
-    const auto meets = [&](std::size_t b, Index d, LinePacket& packet) {
+    const auto in_block = [&](std::size_t b) {
         const PatchBlock& block = scene.sight.blocks()[b];
-        scene.sight.rays(b, d, Pose{}, packet.rays);
-        std::copy_n(scene.background.background.distance.begin() +
-                        static_cast<std::ptrdiff_t>(scene.sight.line(block, d, 0)),
-                    block.count, packet.rays.far.begin());
-        return meets_any(packet, boxes);
+        return [&, block, lines = BlockLines(scene.sight, b, Pose{})](Index d, LinePacket& packet) {
+            lines.rays(d, packet.rays);
+            std::copy_n(scene.background.background.distance.begin() +
+                            static_cast<std::ptrdiff_t>(scene.sight.line(block, d, 0)),
+                        block.count, packet.rays.far.begin());
+            return meets_any(packet, boxes);
+        };
     };
-    return packets_where(scene, range.first, range.last, scene.sight.lines_per_patch(), context, meets);
+    return packets_where(scene, range.first, range.last, scene.sight.lines_per_patch(), context, in_block);
 }
 
 MetPackets light_packets_meeting(const EventScene& scene, std::span<const Box> boxes,
                                  const Context& context) {
-    const auto meets = [&](std::size_t b, Index k, LinePacket& packet) {
+    const auto in_block = [&](std::size_t b) {
         const PatchBlock& block = scene.sight.blocks()[b];
-        if (scene.mesh.body[scene.light.lamp_patch(b, k)] != furniture) return false;
-        std::array<float, 16> unused;
-        scene.light.rays(b, k, scene.placed, packet.rays, unused);
-        const std::size_t line = scene.light.line(block, k, 0);
-        for (std::size_t lane = 0; lane < block.count; ++lane)
-            if (!(scene.background.light_contribution[line + lane] > 0)) packet.rays.far[lane] = -1;
-        return meets_any(packet, boxes);
+        return [&, block, b](Index k, LinePacket& packet) {
+            if (scene.mesh.body[scene.light.lamp_patch(b, k)] != furniture) return false;
+            std::array<float, 16> unused;
+            scene.light.rays(b, k, scene.placed, packet.rays, unused);
+            const std::size_t line = scene.light.line(block, k, 0);
+            for (std::size_t lane = 0; lane < block.count; ++lane)
+                if (!(scene.background.light_contribution[line + lane] > 0)) packet.rays.far[lane] = -1;
+            return meets_any(packet, boxes);
+        };
     };
     return packets_where(scene, 0, scene.light.lines_per_patch(), scene.light.lines_per_patch(), context,
-                         meets);
+                         in_block);
 }
 
 LineEvents replace_events(const SightLines& sight, Index lines, const LineEvents& old,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solver/visibility/block_lines.h"
+
 namespace afterglow {
 
 namespace {
@@ -46,10 +48,11 @@ void add_encounters(const LinePacket& lines, Index direction, std::span<const Sp
 void find_encounters(const SightLines& sight, std::size_t block, const LineTargets& background,
                      const DirectionRange& range, std::span<const SpacetimeExtent> actors,
                      const TimeTree& times, std::vector<Encounter>& out) {
+    const BlockLines of_block(sight, block, Pose{});
     LinePacket lines;
     const PatchBlock& b = sight.blocks()[block];
     for (Index d = range.first; d < range.last; ++d) {
-        sight.rays(block, d, Pose{}, lines.rays);
+        of_block.rays(d, lines.rays);
         std::copy_n(background.distance.begin() + static_cast<std::ptrdiff_t>(sight.line(b, d, 0)), b.count,
                     lines.rays.far.begin());
         lines.prepare();

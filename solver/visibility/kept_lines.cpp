@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "solver/visibility/block_lines.h"
 #include "solver/visibility/line_tests.h"
 
 namespace afterglow {
@@ -27,10 +28,11 @@ class Retracer {
         const PatchBlock& block = sight_.blocks()[b];
         const LineTargets& old = before_.lines.background;
         const std::uint32_t lost = lost_lanes(block);
+        const BlockLines of_block(sight_, b, Pose{});
         std::uint64_t rays = 0;
         for (Index d = 0; d < sight_.lines_per_patch(); ++d) {
             const std::size_t line = sight_.line(block, d, 0);
-            sight_.rays(b, d, Pose{}, packet_.rays);
+            of_block.rays(d, packet_.rays);
             std::uint32_t stale = lost;
             for (Index lane = 0; lane < block.count; ++lane) {
                 if (((stale >> lane) & 1U) != 0) continue;
@@ -43,7 +45,7 @@ class Retracer {
                 copy(old.distance, line, block.count, lines_.background.distance);
                 continue;
             }
-            rays += trace(b, d, line);
+            rays += trace(of_block, d, line);
         }
         return rays;
     }
@@ -98,8 +100,8 @@ class Retracer {
                     to.begin() + static_cast<std::ptrdiff_t>(first));
     }
 
-    std::uint64_t trace(std::size_t b, Index direction, std::size_t line) {
-        sight_.rays(b, direction, Pose{}, packet_.rays);
+    std::uint64_t trace(const BlockLines& of_block, Index direction, std::size_t line) {
+        of_block.rays(direction, packet_.rays);
         HitPacket hits;
         caster_.nearest(packet_.rays, Scope::static_geometry, hits);
         for (Index lane = 0; lane < packet_.rays.count; ++lane) {

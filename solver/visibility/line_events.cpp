@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "solver/base/error.h"
+#include "solver/visibility/block_lines.h"
 
 namespace afterglow {
 
@@ -178,10 +179,11 @@ void find_in_block(const EventScene& scene, std::size_t b, const DirectionRange&
     const LineTargets& background = scene.background.background;
     const int frames = scene.actors.frames().count();
     const PatchBlock& block = scene.sight.blocks()[b];
+    const BlockLines of_block(scene.sight, b, Pose{});
     RayPacket rays;
     for (Index d = range.first; d < range.last; ++d) {
         if (!is_wanted(wanted, b * scene.sight.lines_per_patch() + d)) continue;
-        scene.sight.rays(b, d, Pose{}, rays);
+        of_block.rays(d, rays);
         const std::size_t line = scene.sight.line(block, d, 0);
         std::copy_n(background.distance.begin() + static_cast<std::ptrdiff_t>(line), block.count,
                     rays.far.begin());
@@ -200,9 +202,10 @@ void find_own_in_block(const EventScene& scene, const LinesAlone& alone, std::si
                        const DirectionRange& range, TimeBuffer& buffer, Targets& targets, Part& part) {
     const int frames = scene.actors.frames().count();
     const PatchBlock& block = scene.sight.blocks()[b];
+    const BlockLines of_block(scene.sight, b, Pose{});
     RayPacket rays;
     for (Index d = range.first; d < std::min(range.last, scene.sight.different_lines(block)); ++d) {
-        scene.sight.rays(b, d, Pose{}, rays);
+        of_block.rays(d, rays);
         const std::size_t at = LinesAlone::index(scene.sight, scene.mesh, block, d);
         std::copy_n(alone.lines().distance.begin() + static_cast<std::ptrdiff_t>(at), block.count,
                     rays.far.begin());

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solver/visibility/block_lines.h"
+
 namespace afterglow {
 
 void LinesAlone::reserve(const SightLines& sight, const PatchMesh& mesh) {
@@ -15,12 +17,13 @@ std::uint64_t LinesAlone::extend(const SightLines& sight, const PatchMesh& mesh,
                                  std::size_t block, Index last) {
     const PatchBlock& b = sight.blocks()[block];
     Index& known = known_[block - sight.static_blocks()];
+    const BlockLines of_block(sight, block, Pose{});
     std::uint64_t traced = 0;
     RayPacket rays;
     HitPacket hits;
     for (; known < std::min(last, sight.different_lines(b)); ++known) {
         const std::size_t at = index(sight, mesh, b, known);
-        sight.rays(block, known, Pose{}, rays);
+        of_block.rays(known, rays);
         caster.nearest(rays, b.body, hits);
         for (std::size_t lane = 0; lane < rays.count; ++lane) {
             lines_.patch[at + lane] = target_of(hits[lane], rays.ray(lane), mesh);

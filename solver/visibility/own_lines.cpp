@@ -4,6 +4,8 @@
 #include <atomic>
 #include <bit>
 
+#include "solver/visibility/block_lines.h"
+
 namespace afterglow {
 
 std::uint64_t OwnLines::update(const LineScene& scene, const DirectionRange& range, VisibleLines& visible,
@@ -43,11 +45,12 @@ std::uint64_t OwnLines::learn(const LineScene& scene, std::size_t block, Index l
     Known& known = known_[block - scene.sight.static_blocks()];
     last = std::min(last, scene.sight.different_lines(b));
     std::uint64_t rays = alone_.extend(scene.sight, scene.mesh, scene.caster, block, last);
+    const BlockLines of_block(scene.sight, block, scene.caster.pose(b.body));
     LinePacket lines;
     for (Index d = known.all; d < last; ++d) {
         const std::size_t at = index(scene, b, d);
         const auto offset = static_cast<std::ptrdiff_t>(at);
-        scene.sight.rays(block, d, scene.caster.pose(b.body), lines.rays);
+        of_block.rays(d, lines.rays);
         if (d >= known.background) {
             std::copy_n(alone_.lines().distance.begin() + offset, b.count, lines.rays.far.begin());
             rays += look_at_furniture(scene, lines, at);

@@ -4,6 +4,8 @@
 #include <array>
 #include <atomic>
 
+#include "solver/visibility/block_lines.h"
+
 namespace afterglow {
 
 namespace {
@@ -42,25 +44,11 @@ std::size_t SightLines::block_of(Index patch) const {
 }
 
 void SightLines::rays(std::size_t block, Index direction, const Pose& pose, RayPacket& out) const {
-    const PatchBlock& b = blocks_[block];
-    const Sample4 sample = points_.at(direction % different_lines(b), mixed(seed_, block));
-    const Vec3 local = cosine_direction(sample[0], sample[1]);
-    out.count = b.count;
-    Vec3 normal(0), direction_in_world(0);
-    for (Index lane = 0; lane < b.count; ++lane) {
-        const PatchPoint point = mesh_->point_on(b.first + lane, sample[2], sample[3]);
-        // Neighbours mostly lie in one plane.
-        if (point.normal != normal) {
-            normal = point.normal;
-            direction_in_world = Frame(normal).to_world(local);
-        }
-        Ray ray{point.position + lift_m_ * normal, direction_in_world};
-        if (b.body != furniture) {
-            ray.origin = pose.point(ray.origin);
-            ray.direction = pose.direction(ray.direction);
-        }
-        out.set(lane, ray);
-    }
+    BlockLines(*this, block, pose).rays(direction, out);
+}
+
+Sample4 SightLines::sample(std::size_t block, Index direction) const {
+    return points_.at(direction % different_lines(blocks_[block]), mixed(seed_, block));
 }
 
 namespace {
@@ -146,13 +134,14 @@ std::uint64_t trace_lines(const SightLines& lines, const PatchMesh& mesh, const 
             for (std::size_t b = range.first_block + begin; b < range.first_block + end; ++b) {
                 const PatchBlock& block = lines.blocks()[b];
                 const Index different = lines.different_lines(block);
+                const BlockLines of_block(lines, b, caster.pose(block.body));
                 for (Index d = range.first_direction; d < range.last_direction; ++d) {
                     const std::size_t first = lines.line(block, d, 0);
                     if (d >= range.first_direction + different) {
                         repeat(first, lines.line(block, d - different, 0), block.count, sinks);
                         continue;
                     }
-                    lines.rays(b, d, caster.pose(block.body), rays);
+                    of_block.rays(d, rays);
                     if (block.body == furniture || scope != Scope::everything)
                         caster.nearest(rays, scope, hits);
                     else

@@ -62,6 +62,9 @@ class SightLines {
     /// How far an origin is lifted off its surface so that a ray does not meet the surface it starts on.
     [[nodiscard]] float lift_m() const { return lift_m_; }
 
+    /// What direction and place on their patches the lines of one direction of a block have in common.
+    [[nodiscard]] Sample4 sample(std::size_t block, Index direction) const;
+    [[nodiscard]] const PatchMesh& mesh() const { return *mesh_; }
     /// The rays of one direction of a block, in world coordinates with the block's body at `pose`; far is
     /// infinite.
     void rays(std::size_t block, Index direction, const Pose& pose, RayPacket& out) const;

@@ -5,6 +5,8 @@
 #include <bit>
 #include <mutex>
 
+#include "solver/visibility/block_lines.h"
+
 namespace afterglow {
 
 namespace {
@@ -112,13 +114,14 @@ void TemporalGraphStrategy::look(const Frame& frame, std::size_t block, Temporal
     std::copy(background.patch.begin() + static_cast<std::ptrdiff_t>(from),
               background.patch.begin() + static_cast<std::ptrdiff_t>(to),
               frame.visible.patch.begin() + static_cast<std::ptrdiff_t>(from));
+    const BlockLines of_block(scene.sight, block, Pose{});
     LinePacket lines;
     LaneHits hits;
     for_due_packets(
         encounters_[block].sight, frame.range, frame.slice,
         [&](Index direction, std::span<const Encounter> actors) {
             const std::size_t first = scene.sight.line(b, direction, 0);
-            scene.sight.rays(block, direction, Pose{}, lines.rays);
+            of_block.rays(direction, lines.rays);
             std::copy_n(background.distance.begin() + static_cast<std::ptrdiff_t>(first), b.count,
                         lines.rays.far.begin());
             lines.prepare();

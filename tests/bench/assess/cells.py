@@ -207,7 +207,8 @@ def all_cells(form):
 
 def references(form):
     """(scene, frame, pixels along an edge) of the pictures that errors are told by."""
-    generated = [f"{family}={value}" for family, values in form.values.items() for value in values]
+    # The quick form is over before they were traced.
+    generated = [f"{family}={value}" for family, values in form.values.items() for value in values if not form.is_quick]
     return [*((scene, 12, 96) for scene in form.hard_scenes), *((f"drawn={k}", 12, 96) for k in form.drawn),
             *((scene, form.frames - 1, 96) for scene in generated)]
 

@@ -6,7 +6,7 @@ from results import number, share, table
 
 
 def gains(results):
-    """Whole sequences and following frames of all methods: each knob's ends and what is between."""
+    """Whole sequences and following frames of all methods: each knob's ends and what is between; and what the last pictures are off by."""
     rows = []
     scenes = [f"{family}={value}" for family, values in results.form.values.items()
               for value in ([values[0], values[len(values) // 2], values[-1]] if len(values) > 3 else values)]
@@ -16,14 +16,16 @@ def gains(results):
         full = results.one("families", scene, "full")
         if not full:
             continue
-        row = [scene, number(full["patches"]), number(1000 * full["follow_s"])]
+        error = results.error("families", scene, "full")
+        row = [scene, number(full["patches"]), f"{share(error[0])} ({share(error[1])} to {share(error[2])})" if error else "",
+               number(1000 * full["follow_s"])]
         best = max(ways, key=lambda w: results.gain(scene, w) or 0)
         for way in ways:
             whole, following = results.gain(scene, way), results.gain(scene, way, True)
             words = f"{number(whole, 2)} / {number(following, 2)}" if whole else ""
             row.append(f"**{words}**" if way == best and words else words)
         rows.append(row)
-    return table(["scene", "patches", "`full`, ms a frame", *(f"`{w}`" for w in ways)], rows)
+    return table(["scene", "patches", "error of `full` (95 %)", "`full`, ms a frame", *(f"`{w}`" for w in ways)], rows)
 
 
 def work(results):
@@ -38,18 +40,6 @@ def work(results):
                              number(row.get("peak_mb")), share(results.apart(scene, way))])
     return table(["scene", "method", "first frame, s", "following, ms", "rays", "changes", "pushes", "largest certificate", "peak MB",
                   "picture apart from `full`"], rows)
-
-
-def errors(results):
-    """What the last pictures of the families are off by, with the interval of the first method's."""
-    rows = []
-    for scene in (f"{family}={value}" for family, values in results.form.values.items() for value in values):
-        found = {way: error for way in [*cells.methods, "auto"] if (error := results.error("families", scene, way))}
-        if "full" in found:
-            _, low, high = found["full"]
-            rows.append([scene, f"{share(found['full'][0])} ({share(low)} to {share(high)})",
-                         *(share(found[way][0]) if way in found else "" for way in [*cells.methods, "auto"] if way != "full")])
-    return table(["scene", "`full` (95 %)", *(f"`{way}`" for way in [*cells.methods, "auto"] if way != "full")], rows)
 
 
 def axes(results):
@@ -183,6 +173,6 @@ def asked_summary(results):
     return table(["asked", "", "within", "worst error / asked", "median time ratio", "worst time ratio", "scenes where no fixed setting reaches the error"], rows)
 
 
-chapter_of = {"gains": "families", "work": "families", "errors": "families", "axes": "axes", "coherences": "coherences", "lines": "parts", "orders": "parts",
+chapter_of = {"gains": "families", "work": "families", "axes": "axes", "coherences": "coherences", "lines": "parts", "orders": "parts",
               "factors": "parts", "mesh": "mesh", "quality": "quality", "flicker": "flicker", "asked_summary": "asked", "missed": "asked", "asked": "asked"}
 all_tables = {name: globals()[name] for name in chapter_of}
