@@ -117,10 +117,13 @@ class TileUpdater {
     /// The further samples of pixels whose first ones ask for them.
     void update_further(Index tile, KeptTile& kept) {
         PerPixel outdated{};
+        TileTotals totals{};
+        for_pixels(tile, [&](std::size_t pixel, int, int) { totals[pixel] = &kept.sums[pixel].first; });
         for_pixels(tile, [&](std::size_t pixel, int, int) {
             first_light_[pixel] = light_of(first_shares(kept, pixel), lit_.irradiance);
-            const bool noisy =
-                more_ > 0 && kept.sums[pixel].first.is_noisy(state_.config.noise, first_light_[pixel]);
+            const PixelTotals& first = kept.sums[pixel].first;
+            const bool noisy = more_ > 0 && (first.is_noisy(state_.config.noise, first_light_[pixel]) ||
+                                             may_miss_light(totals, pixel));
             outdated[pixel] = noisy && !kept.shows_further[pixel];
             if (noisy != kept.shows_further[pixel]) new_further_[pixel] = true;
             kept.shows_further[pixel] = noisy;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "solver/image/camera_samples.h"
+#include "solver/image/picture_tiles.h"
 #include "solver/image/pixel_sum.h"
 #include "solver/image/seen_point.h"
 #include "solver/image/shadow_lines.h"
@@ -17,16 +18,7 @@ namespace afterglow {
 namespace {
 
 constexpr std::size_t lanes = 16;
-
-/// A pixel as it is being made.
-struct Pixel {
-    PixelSum first, further;  // the samples every pixel has, and those of noisy ones besides
-
-    [[nodiscard]] Rgb mean(std::span<const Rgb> irradiance) const {
-        return mean_of(first.totals(), light_of(first.patches(), irradiance), further.totals(),
-                       light_of(further.patches(), irradiance));
-    }
-};
+constexpr std::size_t edge = PictureTiles::edge;
 
 /// Takes sixteen samples at a time: of neighbouring pixels, or of one.
 class PacketRenderer {
@@ -35,38 +27,67 @@ class PacketRenderer {
                    const CameraSamples& samples, const ShadowLines& lines)
         : view_(view), lit_(lit), config_(config), samples_(samples), lines_(lines), shadows_(lines) {}
 
-    /// The first samples of a row's pixels.
-    void begin_row(int y, std::span<Pixel> row) {
-        for (int x0 = 0; x0 < view_.width; x0 += static_cast<int>(lanes)) {
-            count_ = static_cast<std::size_t>(std::min(static_cast<int>(lanes), view_.width - x0));
-            for (std::size_t k = 0; k < static_cast<std::size_t>(config_.samples_per_pixel); ++k) {
-                for (std::size_t lane = 0; lane < count_; ++lane)
-                    lane_[lane] = {x0 + static_cast<int>(lane), y, k};
-                take_samples();
-                for (std::size_t lane = 0; lane < count_; ++lane)
-                    add_to(row[static_cast<std::size_t>(lane_[lane].x)].first, lane);
-            }
-        }
-    }
-
-    /// The other samples of those that need them.
-    void refine_row(int y, std::span<Pixel> row) {
-        const auto most = static_cast<std::size_t>(config_.most_samples_per_pixel);
-        for (int x = 0; x < view_.width; ++x) {
-            Pixel& pixel = row[static_cast<std::size_t>(x)];
-            const Rgb by_patches = light_of(pixel.first.patches(), lit_.irradiance);
-            if (!pixel.first.totals().is_noisy(config_.noise, by_patches)) continue;
-            for (auto k = static_cast<std::size_t>(config_.samples_per_pixel); k < most; k += lanes) {
-                count_ = std::min(lanes, most - k);
-                for (std::size_t lane = 0; lane < count_; ++lane) lane_[lane] = {x, y, k + lane};
-                take_samples();
-                for (std::size_t lane = 0; lane < count_; ++lane) add_to(pixel.further, lane);
-            }
+    /// A row of tiles, from pixel row `top` on.
+    void render(int top, Picture& picture) {
+        const int bottom = std::min(top + PictureTiles::edge, view_.height);
+        for (int left = 0; left < view_.width; left += static_cast<int>(lanes)) {
+            const int right = std::min(left + static_cast<int>(lanes), view_.width);
+            for (int y = top; y < bottom; ++y)
+                begin(left, right, y, std::span(first_).subspan(static_cast<std::size_t>(y - top) * lanes));
+            for (int x = left; x < right; x += PictureTiles::edge)
+                finish_tile(left, x, std::min(x + PictureTiles::edge, right), top, bottom, picture);
         }
     }
     [[nodiscard]] std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
+    /// The first samples of a row's pixels.
+    void begin(int left, int right, int y, std::span<PixelSum> pixels) {
+        count_ = static_cast<std::size_t>(right - left);
+        for (PixelSum& pixel : pixels.first(count_)) pixel.clear();
+        for (std::size_t k = 0; k < static_cast<std::size_t>(config_.samples_per_pixel); ++k) {
+            count_ = static_cast<std::size_t>(right - left);
+            for (std::size_t lane = 0; lane < count_; ++lane)
+                lane_[lane] = {left + static_cast<int>(lane), y, k};
+            take_samples();
+            for (std::size_t lane = 0; lane < count_; ++lane) add_to(pixels[lane], lane);
+        }
+    }
+
+    /// Pixels [from, to) of rows [top, bottom), whose first ones begin at `left`.
+    void finish_tile(int left, int from, int to, int top, int bottom, Picture& picture) {
+        const auto first_of = [&](int x, int y) -> const PixelSum& {
+            return first_[static_cast<std::size_t>(y - top) * lanes + static_cast<std::size_t>(x - left)];
+        };
+        const auto place_of = [&](int x, int y) {
+            return static_cast<std::size_t>(y - top) * edge + static_cast<std::size_t>(x - from);
+        };
+        TileTotals tile{};
+        for (int y = top; y < bottom; ++y)
+            for (int x = from; x < to; ++x) tile[place_of(x, y)] = &first_of(x, y).totals();
+        for (int y = top; y < bottom; ++y)
+            for (int x = from; x < to; ++x) {
+                const PixelSum& first = first_of(x, y);
+                const Rgb by_patches = light_of(first.patches(), lit_.irradiance);
+                further_.clear();
+                if (first.totals().is_noisy(config_.noise, by_patches) ||
+                    may_miss_light(tile, place_of(x, y)))
+                    take_further(x, y);
+                picture.at(x, y) = mean_of(first.totals(), by_patches, further_.totals(),
+                                           light_of(further_.patches(), lit_.irradiance));
+            }
+    }
+
+    void take_further(int x, int y) {
+        const auto most = static_cast<std::size_t>(config_.most_samples_per_pixel);
+        for (auto k = static_cast<std::size_t>(config_.samples_per_pixel); k < most; k += lanes) {
+            count_ = std::min(lanes, most - k);
+            for (std::size_t lane = 0; lane < count_; ++lane) lane_[lane] = {x, y, k + lane};
+            take_samples();
+            for (std::size_t lane = 0; lane < count_; ++lane) add_to(further_, lane);
+        }
+    }
+
     void take_samples() {
         trace_camera_rays();
         direct_.fill(Rgb(0));
@@ -112,7 +133,9 @@ class PacketRenderer {
     const CameraSamples& samples_;
     const ShadowLines& lines_;
     ShadowPacket shadows_;
-    std::uint32_t taking_light_ = 0;  // lanes whose points do
+    std::array<PixelSum, edge * lanes> first_;  // the samples every pixel has, of some tiles side by side
+    PixelSum further_;                          // those that a noisy pixel has besides
+    std::uint32_t taking_light_ = 0;            // lanes whose points do
     std::size_t count_ = 0;
     std::array<CameraSample, lanes> lane_;
     std::array<SampleNumber, lanes> number_;
@@ -133,24 +156,13 @@ Rgb interpolated_irradiance(const LitWorld& lit, const Ray& ray, const Hit& hit)
 
 Picture render_picture(const CameraView& view, const LitWorld& lit, const PictureConfig& config,
                        std::uint64_t& rays_traced, const Context& context) {
-    const auto width = static_cast<std::size_t>(view.width);
     const CameraSamples samples(view, config);
     const ShadowLines lines(lit, config);
     Picture picture(view.width, view.height);
     std::atomic<std::uint64_t> traced = 0;
-    context.for_chunks(static_cast<std::size_t>(view.height), 4, [&](std::size_t begin, std::size_t end) {
+    context.for_chunks(static_cast<std::size_t>(view.height), edge, [&](std::size_t begin, std::size_t end) {
         PacketRenderer renderer(view, lit, config, samples, lines);
-        std::vector<Pixel> row(width);
-        for (std::size_t y = begin; y < end; ++y) {
-            for (Pixel& pixel : row) {
-                pixel.first.clear();
-                pixel.further.clear();
-            }
-            renderer.begin_row(static_cast<int>(y), row);
-            renderer.refine_row(static_cast<int>(y), row);
-            for (std::size_t x = 0; x < width; ++x)
-                picture.at(static_cast<int>(x), static_cast<int>(y)) = row[x].mean(lit.irradiance);
-        }
+        for (std::size_t top = begin; top < end; top += edge) renderer.render(static_cast<int>(top), picture);
         traced += renderer.rays_traced();
     });
     rays_traced += traced;

@@ -24,6 +24,19 @@ bool PixelTotals::is_noisy(float noise, const Rgb& patch_light) const {
     return variance > noise * noise * mean * mean;
 }
 
+bool may_miss_light(const TileTotals& tile, std::size_t pixel) {
+    const PixelTotals& dark = *tile[pixel];
+    if (dark.is_lit || !(dark.reflected_lum > 0)) return false;
+    constexpr std::size_t edge = PictureTiles::edge;
+    const std::size_t x = pixel % edge, y = pixel / edge;
+    for (std::size_t v = y - std::min<std::size_t>(y, 1); v < std::min(y + 2, edge); ++v)
+        for (std::size_t u = x - std::min<std::size_t>(x, 1); u < std::min(x + 2, edge); ++u) {
+            const PixelTotals* other = tile[v * edge + u];
+            if (other != nullptr && other->is_lit && other->surface == dark.surface) return true;
+        }
+    return false;
+}
+
 void PixelSum::clear() {
     totals_ = {};
     patches_.clear();
@@ -43,6 +56,7 @@ void PixelSum::add(const SampleLight& sample, std::span<const float> confidence)
     t.reflected_squared += b * b;
     if (t.count > 0 && sample.surface != t.surface) t.sees_several = true;
     t.surface = sample.surface;
+    if (max_channel(sample.direct) > 0) t.is_lit = true;
     ++t.count;
 
     float whole = 0;

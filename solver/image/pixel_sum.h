@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "solver/image/picture_tiles.h"
 #include "solver/mesh/interpolation.h"
 
 namespace afterglow {
@@ -30,6 +32,7 @@ struct PixelTotals {
     int count = 0;
     Index surface = no_index;
     bool sees_several = false;
+    bool is_lit = false;  ///< any sample takes light that does not come by patches
     /// Moments of what is constant in a sample and of its reflectance over π, as luminance.
     float constant_lum = 0, reflected_lum = 0, constant_squared = 0, product = 0, reflected_squared = 0;
 
@@ -37,6 +40,14 @@ struct PixelTotals {
     /// above `noise` of it. `patch_light` is what patches add to `constant`; within a pixel they light alike.
     [[nodiscard]] bool is_noisy(float noise, const Rgb& patch_light) const;
 };
+
+/// The first samples of four rows of four pixels; null where the picture ends.
+using TileTotals = std::array<const PixelTotals*, PictureTiles::edge * PictureTiles::edge>;
+
+/// Whether none of a pixel's samples takes light straight from a lamp, though a pixel beside it, of the same
+/// tile, has some on the same surface: it may lie where a little of a lamp is seen, and samples that all miss
+/// that look free of noise. Thread-safety: pure.
+bool may_miss_light(const TileTotals& tile, std::size_t pixel);
 
 /// Totals with their patches, each once, in the order in which they are met.
 class PixelSum {
