@@ -59,6 +59,7 @@ Json to_json(const Report& report, double peak_rss_mb) {
             {"precompute", std::move(ahead)},
             {"peak_rss_mb", peak_rss_mb},
             {"frames", std::move(frames)},
+            {"made_for_error", or_null(report.sequence.made_for_error)},
             {"method_reason", report.sequence.method_reason}};
 }
 

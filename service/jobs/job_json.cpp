@@ -46,7 +46,8 @@ Json to_json(const SequenceStatistics& statistics) {
             {"setup_ms", statistics.setup.count()},
             {"static_ms", statistics.static_pass.count()},
             {"static_from_cache", statistics.static_from_cache},
-            {"exposure_ev", or_null(statistics.exposure_ev)}};
+            {"exposure_ev", or_null(statistics.exposure_ev)},
+            {"made_for_error", or_null(statistics.made_for_error)}};
 }
 
 Json to_json(const Warning& warning) {

@@ -59,6 +59,8 @@ SequenceStatistics sequence_statistics_of(const Json& json) {
     statistics.static_from_cache = json.value("static_from_cache", false);
     if (const auto known = json.find("exposure_ev"); known != json.end() && known->is_number())
         statistics.exposure_ev = known->get<float>();
+    if (const auto known = json.find("made_for_error"); known != json.end() && known->is_number())
+        statistics.made_for_error = known->get<double>();
     return statistics;
 }
 

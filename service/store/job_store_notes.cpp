@@ -45,10 +45,12 @@ void JobStore::note_statistics(const std::string& id, const SequenceStatistics& 
     const std::lock_guard lock(mutex_);
     Record* record = active(id);
     if (record == nullptr) return;
-    const bool is_first_exposure = statistics.exposure_ev && !record->job.statistics.exposure_ev;
+    const SequenceStatistics& before = record->job.statistics;
+    const bool tells_more = (statistics.exposure_ev && !before.exposure_ev) ||
+                            (statistics.made_for_error && !before.made_for_error);
     record->job.statistics = statistics;
     // Whoever goes on with an edited job after a restart could not find it again.
-    if (is_first_exposure) save_or_tell(record->job);
+    if (tells_more) save_or_tell(record->job);
 }
 
 void JobStore::note_warnings(const std::string& id, const Warnings& warnings) {

@@ -110,6 +110,7 @@ std::unique_ptr<JobRun> solver_run(const Job& job, World world, const std::files
     config.frames_expected = job.frame_count();
     // An edited scene's own exposure would be another than that of the pictures there are.
     if (!config.exposure_ev) config.exposure_ev = job.statistics.exposure_ev;
+    config.made_for_error = job.statistics.made_for_error;
     for (const Edit* edit : edits_of(job)) apply(world, *edit);
     return std::make_unique<SolverRun>(job, std::move(world), std::move(config), context);
 }

@@ -20,7 +20,7 @@ struct Measured {
 // The largest error first. Of the two kinds of noise that of pixels is the dearer: lines are fewer and
 // samples more than in the quality of the same error.
 constexpr std::array<Measured, 6> measured{{
-    {0.10, 1000, 1.000F, 0.7F, 64, 2, 8, 2, 0.100F, 16, 8, 2},
+    {coarsest_error, 1000, 1.000F, 0.7F, 64, 2, 8, 2, 0.100F, 16, 8, 2},
     {0.05, 1000, 0.250F, 0.7F, 96, 4, 12, 2, 0.080F, 16, 8, 2},
     {0.03, 1500, 0.125F, 0.7F, 128, 4, 24, 2, 0.050F, 16, 16, 3},
     {0.02, 2200, 0.125F, 0.7F, 256, 8, 32, 2, 0.030F, 16, 16, 3},
@@ -58,7 +58,7 @@ bool error_settles_all(const SequenceConfig& config) {
 }
 
 QualityLevel level_for_error(double asked, double pixels) {
-    const double error = std::clamp(asked, finest_tried_error, measured.front().error);
+    const double error = std::clamp(asked, finest_tried_error, coarsest_error);
     std::size_t k = 1;
     while (k + 1 < measured.size() && error < measured[k].error) ++k;
     const Measured& a = measured[k - 1];

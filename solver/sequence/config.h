@@ -62,6 +62,9 @@ struct SequenceConfig {
     /// level_for_error. Where rays_per_patch or patch_size_m are given, it is the solution's certificate and
     /// nothing else. By quality where not given.
     std::optional<double> asked_error;
+    /// What an earlier part of the same job came to make its pictures for, see
+    /// SequenceStatistics::made_for_error; found from the picture of time 0 where not given.
+    std::optional<double> made_for_error;
     Quality quality = Quality::preview;  ///< see Quality
     int width = 640;                     ///< pixels, 1 to 16,384
     int height = 360;                    ///< pixels, 1 to 16,384

@@ -1,12 +1,14 @@
 #include "solver/sequence/edit_tools.h"
 
+#include <tuple>
+#include <utility>
+
 #include "solver/sequence/choose.h"
 #include "solver/sequence/prepare.h"
 
 namespace afterglow {
 
 void forget_frames(SequenceState::Parts& parts) {
-    parts.edited = true;
     parts.kept_light.reset();
     parts.radiosity_before.clear();
     parts.kept_rows.reset();
@@ -16,10 +18,19 @@ void forget_frames(SequenceState::Parts& parts) {
 }
 
 EditOutcome begin_anew(SequenceState::Parts& parts, const Context& context) {
-    parts.background = {};
+    const auto sizes = std::pair(parts.guessed_size_m, parts.patch_size_m);
+    const SideMask reached = parts.reached;
     parts.guessed_size_m.reset();
     parts.patch_size_m.reset();
-    mesh_world(parts, context);
+    try {
+        divide_world(parts, context);
+    } catch (...) {
+        std::tie(parts.guessed_size_m, parts.patch_size_m) = sizes;
+        parts.reached = reached;
+        throw;
+    }
+    parts.background = {};
+    lay_lines(parts);
     forget_frames(parts);
     return {0, 0, false};
 }

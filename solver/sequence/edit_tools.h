@@ -9,7 +9,7 @@ namespace afterglow {
 /// What followed from frame to frame, lines' backgrounds apart, is of no more use.
 void forget_frames(SequenceState::Parts& parts);
 
-/// Everything but the scene itself, from the beginning.
+/// Everything but the scene itself, from the beginning. Errors: cancelled, which leaves all as it was.
 EditOutcome begin_anew(SequenceState::Parts& parts, const Context& context);
 
 }  // namespace afterglow

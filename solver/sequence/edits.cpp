@@ -36,16 +36,26 @@ void set_lamps(SequenceState::Parts& parts, Lamps lamps, const Context& context)
 EditOutcome set_emission(SequenceState& state, const std::string& material, const Rgb& emission,
                          const Context& context) {
     SequenceState::Parts& parts = state.parts();
+    const Index edited = index_named(parts.world.materials, 0, material, "material");
+    const Rgb emission_before = parts.world.materials[edited].emission;
+    const auto tracks_before = parts.world.material_emission;
     set_emission(parts.world, material, emission);
     parts.edited = true;
     // A lamp that is off is still a lamp.
     if (max_channel(emission) <= 0) return {};
-    if (reaches_more(parts, context)) return begin_anew(parts, context);
-    Lamps lamps = find_lamps(parts.world, parts.mesh);
-    if (lamps.lamp_of_patch == parts.lamps.lamp_of_patch) return {};
-    const auto sight = static_cast<double>(parts.sight->lines_per_patch());
-    set_lamps(parts, std::move(lamps), context);
-    return {sight / (sight + parts.light->lines_per_patch()), 0, false};
+    try {
+        if (reaches_more(parts, context)) return begin_anew(parts, context);
+        Lamps lamps = find_lamps(parts.world, parts.mesh);
+        if (lamps.lamp_of_patch == parts.lamps.lamp_of_patch) return {};
+        const auto sight = static_cast<double>(parts.sight->lines_per_patch());
+        set_lamps(parts, std::move(lamps), context);
+        return {sight / (sight + parts.light->lines_per_patch()), 0, false};
+    } catch (...) {
+        parts.world.materials[edited].emission = emission_before;
+        parts.world.material_emission = tracks_before;
+        begin_anew(parts, Context(context.threads()));
+        throw;
+    }
 }
 
 EditOutcome set_intensity(SequenceState& state, const std::string& lamp, const Rgb& intensity) {

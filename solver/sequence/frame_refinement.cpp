@@ -327,24 +327,41 @@ Picture FrameRefinement::final_picture(const Context& context) {
     return made;
 }
 
-void FrameRefinement::estimate_error(const Picture& final_picture, const Context& context) {
+const ProbeEstimate& FrameRefinement::probe(const Picture& final_picture, const Context& context) {
+    if (probed_) return *probed_;
     const Stopwatch watch;
     context.report(0.9, "estimating the picture's error");
-    compile(context);
-    const SeenLines seen{parts_.visible.patch, directions_, parts_.visible.light_contribution};
-    const auto differences = half_differences(*parts_.sight, parts_.lamps, seen, rows_->factors, radiosity(),
-                                              pi * parts_.world.background, context);
     const DirectLight direct = direct_light();
     const PathScene scene{&parts_.world, &parts_.caster, materials_,
                           &direct,       lights_,        parts_.sight->lift_m()};
     const CameraView view = view_at(parts_.camera, time_s_, final_picture.width, final_picture.height);
-    const ProbeEstimate estimate = afterglow::estimate_error(
-        final_picture, view, scene, level_of(parts_.config).probes, statistics_.rays_traced, context);
+    probed_ = afterglow::estimate_error(final_picture, view, scene, level_of(parts_.config).probes,
+                                        statistics_.rays_traced, context);
+    statistics_.image += watch.elapsed();
+    return *probed_;
+}
+
+void FrameRefinement::estimate_error(const Picture& final_picture, const Context& context) {
+    const ProbeEstimate& estimate = probe(final_picture, context);
+    const Stopwatch watch;
+    compile(context);
+    const SeenLines seen{parts_.visible.patch, directions_, parts_.visible.light_contribution};
+    const auto differences = half_differences(*parts_.sight, parts_.lamps, seen, rows_->factors, radiosity(),
+                                              pi * parts_.world.background, context);
+    const CameraView view = view_at(parts_.camera, time_s_, final_picture.width, final_picture.height);
     statistics_.picture_error = estimate.relative_error;
     statistics_.picture_error_spread = estimate.standard_error;
     statistics_.line_noise =
         line_noise(final_picture, view, lit_by(differences), statistics_.rays_traced, context);
     statistics_.image += watch.elapsed();
+}
+
+void FrameRefinement::add_cost(const FrameStatistics& earlier) {
+    statistics_.visibility += earlier.visibility;
+    statistics_.solve += earlier.solve;
+    statistics_.image += earlier.image;
+    statistics_.rays_traced += earlier.rays_traced;
+    statistics_.shots += earlier.shots;
 }
 
 }  // namespace afterglow

@@ -26,13 +26,17 @@ class FrameRefinement {
     /// What is solved so far, with an estimate of the light still on its way.
     Picture preliminary_picture(int width, int height, const Context& context);
     Picture final_picture(const Context& context);
-    /// How far the final picture is off, by probes; noted in the statistics.
+    /// How far the final picture is off. Probed once.
+    const ProbeEstimate& probe(const Picture& final_picture, const Context& context);
+    /// The same with the noise of lines, noted in the statistics.
     void estimate_error(const Picture& final_picture, const Context& context);
 
     [[nodiscard]] const Certificate& certificate() const { return certificate_; }
     /// Whether single precision was too coarse for the latest solution's asked error.
     [[nodiscard]] bool exhausted() const { return exhausted_; }
     [[nodiscard]] const FrameStatistics& statistics() const { return statistics_; }
+    /// Counts what an earlier form of the same frame has cost as well.
+    void add_cost(const FrameStatistics& earlier);
 
   private:
     void compile(const Context& context);
@@ -70,6 +74,7 @@ class FrameRefinement {
     std::vector<float> valid_share_;  ///< by patch, of its lines
     bool exhausted_ = false;
     Certificate certificate_;
+    std::optional<ProbeEstimate> probed_;
     FrameStatistics statistics_;
 };
 

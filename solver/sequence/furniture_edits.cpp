@@ -65,6 +65,7 @@ double lay_again(Parts& parts, const Before& before, std::vector<Box> changed, c
     const auto kept = keep_numbers(before.mesh, parts.mesh);
     lay_lines(parts);
     forget_frames(parts);
+    parts.edited = true;
     parts.radiosity_before = known_radiosity(before, parts.mesh, kept);
     parts.background = {};
     // Coarser preliminary pictures may have been all there is so far.

@@ -45,6 +45,12 @@ struct KeptRows {
     std::optional<KeptView> view;
 };
 
+/// An asked error whose keeping is still to be seen: `config.asked_error` becomes what pictures are made for.
+struct Settling {
+    double asked = 0;
+    int tries_left = 2;  ///< to make everything finer
+};
+
 /// What a sequence keeps from frame to frame. Parts point at each other, so they stay where they are: behind
 /// one pointer.
 struct SequenceState::Parts {
@@ -76,6 +82,7 @@ struct SequenceState::Parts {
     std::vector<std::optional<Lanes>> radiosity_before;
     KeptPictureState picture;          ///< the final one of the frame before; empty where the camera moves
     std::optional<float> exposure_ev;  ///< set once, for all frames
+    std::optional<Settling> settling;  ///< as long as it is open what pictures are made for
     SequenceStatistics statistics;
     Warnings warnings;
     bool warned_of_exhaustion = false;  ///< one such warning a job is enough

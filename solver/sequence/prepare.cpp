@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solver/base/stopwatch.h"
 #include "solver/formfactor/static_cache.h"
@@ -49,6 +50,8 @@ void check(const SequenceConfig& config) {
             "patch_size", "must be above 0 metres");
     require(!config.asked_error || (*config.asked_error > 0 && *config.asked_error < 1), "error",
             "must lie between 0 and 1");
+    require(!config.made_for_error || (*config.made_for_error > 0 && *config.made_for_error < 1),
+            "made_for_error", "must lie between 0 and 1");
     require(!config.picture_tolerance ||
                 (*config.picture_tolerance >= 0 && std::isfinite(*config.picture_tolerance)),
             "picture_tolerance", "must be 0 or more");
@@ -128,9 +131,10 @@ void mesh_world(SequenceState::Parts& parts, const Context& context) {
 }
 
 void divide_world(SequenceState::Parts& parts, const Context& context) {
-    parts.mesh = mesh_reached(parts, context);
-    if (parts.mesh.size() == 0)
+    PatchMesh mesh = mesh_reached(parts, context);
+    if (mesh.size() == 0)
         throw Error(ErrorKind::invalid_input, parts.world.name, "no surface can be reached by light or seen");
+    parts.mesh = std::move(mesh);
 }
 
 void lay_lines(SequenceState::Parts& parts) {

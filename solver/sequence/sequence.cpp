@@ -14,6 +14,7 @@
 #include "solver/sequence/frame_refinement.h"
 #include "solver/sequence/prepare.h"
 #include "solver/sequence/quality.h"
+#include "solver/sequence/settle_error.h"
 
 namespace afterglow {
 
@@ -124,6 +125,38 @@ std::uint64_t count_changes(SequenceState::Parts& parts) {
     return changes;
 }
 
+/// All of a frame's lines, its light as the job solves it, and the picture of that.
+Picture finish(SequenceState::Parts& parts, FrameRefinement& frame, Publisher& publisher,
+               const Context& context) {
+    frame.look(parts.sight->lines_per_patch(), *parts.strategy, context);
+    frame.solve_finally(level_of(parts.config).certificate, context);
+    // After an edit all of the picture may be new, which takes longer than the light that follows.
+    if (parts.edited && publisher.wants_preliminary() && !publisher.has_published())
+        publisher.publish_preliminary(
+            frame.preliminary_picture(parts.config.width, parts.config.height, context),
+            frame.certificate().residual);
+    return frame.final_picture(context);
+}
+
+/// The same, made again and more finely as long as the asked error is not settled and seems missed.
+Picture settled_picture(SequenceState::Parts& parts, std::optional<FrameRefinement>& frame, int frame_number,
+                        Publisher& publisher, const Context& context) {
+    for (double done = 0;;) {
+        // Half of what is left is set apart for a picture that may have to be made again.
+        const double end = is_to_be_settled(parts) ? (1 + done) / 2 : 1;
+        const Context stage = context.part(done, end);
+        done = end;
+        Picture picture = finish(parts, *frame, publisher, stage);
+        if (!is_to_be_settled(parts) || !settle_error(parts, frame->probe(picture, stage), stage))
+            return picture;
+        if (publisher.wants_preliminary())
+            publisher.publish_preliminary(std::move(picture), frame->certificate().residual);
+        const FrameStatistics earlier = frame->statistics();
+        frame.emplace(parts, frame_number);
+        frame->add_cost(earlier);
+    }
+}
+
 }  // namespace
 
 SequenceState::SequenceState(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -153,6 +186,7 @@ SequenceState make_state(World world, const SequenceConfig& config, const Contex
     parts->camera = find_camera(parts->world, config.camera);
     parts->strategy = make_strategy(choice.visibility, parts->world, parts->clock());
     warn_of_fine_error(*parts);
+    begin_settling(*parts);
     mesh_world(*parts, context);
     parts->statistics.setup = watch.elapsed();
     return SequenceState(std::move(parts));
@@ -167,35 +201,32 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     if (!parts.exposure_ev) parts.exposure_ev = find_exposure(parts, context.part(0, 0.1));
     parts.statistics.exposure_ev = parts.exposure_ev;
 
-    FrameRefinement frame(parts, frame_number);
+    const bool settles_before = frame_number != 0 && is_to_be_settled(parts);
+    FrameStatistics cost_before;
+    if (settles_before) cost_before = settle_error_at_start(parts, context.part(0.1, 0.5));
+
+    std::optional<FrameRefinement> frame(std::in_place, parts, frame_number);
+    frame->add_cost(cost_before);
     Publisher publisher(parts, frame_number, on_revision, context);
-    const Index all = parts.sight->lines_per_patch();
     if (publisher.wants_preliminary()) {
-        const Context part = context.part(0.1, 0.6);
+        const Context part = context.part(settles_before ? 0.5 : 0.1, 0.6);
         for (const Index directions : preliminary_looks(parts)) {
-            const double done = static_cast<double>(directions) / all;
+            const double done = static_cast<double>(directions) / parts.sight->lines_per_patch();
             const Context stage = part.part(0.25 * done, done);
-            frame.look(directions, *parts.strategy, stage);
-            frame.solve(coarse_error, stage);
+            frame->look(directions, *parts.strategy, stage);
+            frame->solve(coarse_error, stage);
             publisher.publish_preliminary(
-                frame.preliminary_picture(parts.config.width, parts.config.height, stage),
-                frame.certificate().residual);
+                frame->preliminary_picture(parts.config.width, parts.config.height, stage),
+                frame->certificate().residual);
         }
     }
     const Context last = context.part(0.6, 1);
-    frame.look(all, *parts.strategy, last);
-    frame.solve_finally(level_of(parts.config).certificate, last);
-    warn_of_exhaustion(parts, frame, frame_number);
-    // After an edit all of the picture may be new, which takes longer than the light that follows.
-    if (parts.edited && publisher.wants_preliminary() && !publisher.has_published())
-        publisher.publish_preliminary(
-            frame.preliminary_picture(parts.config.width, parts.config.height, last),
-            frame.certificate().residual);
-    Picture picture = frame.final_picture(last);
-    if (parts.config.estimate == Estimate::probes) frame.estimate_error(picture, last);
-    publisher.publish_final(std::move(picture), frame.statistics());
+    Picture picture = settled_picture(parts, frame, frame_number, publisher, last);
+    warn_of_exhaustion(parts, *frame, frame_number);
+    if (parts.config.estimate == Estimate::probes) frame->estimate_error(picture, last);
+    publisher.publish_final(std::move(picture), frame->statistics());
 
-    FrameStatistics statistics = frame.statistics();
+    FrameStatistics statistics = frame->statistics();
     statistics.frame = frame_number;
     statistics.visibility_changes += count_changes(parts);
     ++parts.frames_shown;

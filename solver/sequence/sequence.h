@@ -42,6 +42,9 @@ struct SequenceStatistics {
     Milliseconds static_pass{};  ///< sight lines against the furniture, or reading them from the cache
     bool static_from_cache = false;
     std::vector<WorkAhead> work_ahead;  ///< what was done for ranges of frames at once
+    /// Where an asked error settles everything, once it is known: the error that pictures are made for, the
+    /// asked one or, in a scene where that takes more than usual, a smaller one.
+    std::optional<double> made_for_error = {};
     /// Stops by which all pictures are brightened, once a frame has been computed.
     std::optional<float> exposure_ev = {};
 
@@ -87,9 +90,11 @@ class SequenceState {
 /// a camera; cannot_converge where the gain is 1 or more; cancelled.
 SequenceState make_state(World world, const SequenceConfig& config, const Context& context);
 
-/// Computes one frame (0 or more, in any order). `on_revision` gets each better picture, the last one marked
-/// final; the same thread calls it. It may be empty, and then no preliminary pictures are made; the final
-/// picture does not depend on that. Errors: cancelled leaves the state usable for another step.
+/// Computes one frame (0 or more, in any order). Where an asked error settles everything, the first call
+/// probes the picture of time 0, and where that is farther off than asked divides the world anew, more
+/// finely. `on_revision` gets each better picture, the last one marked final; the same thread calls it. It
+/// may be empty, and then no preliminary pictures are made; the final picture does not depend on that.
+/// Errors: cancelled leaves the state usable for another step.
 FrameStatistics step(SequenceState& state, int frame, const RevisionSink& on_revision,
                      const Context& context);
 

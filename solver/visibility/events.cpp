@@ -73,9 +73,9 @@ class Events : public VisibilityStrategy {
     std::optional<double> follow_path(const LineScene& scene, Index actor, const Path& before,
                                       const Context& context) override {
         if (!anything_moves(world_)) return std::nullopt;
+        forget_changes();
         if (!window_) return 0;
         const Stopwatch watch;
-        forget_changes();
         shown_.reset();
         // As in extend.
         Window window = std::move(*window_);

@@ -163,7 +163,7 @@ class Frames(Case):
         report = json.loads((self.folder / "report.json").read_text())
         self.assertEqual(set(report), {"scene", "method", "patches", "actor_patches", "sight_lines", "rays_per_patch",
                                        "load_ms", "static_ms", "precompute", "peak_rss_mb", "frames",
-                                       "method_reason"})
+                                       "made_for_error", "method_reason"})
         self.assertEqual(report["scene"], str(SCENE))
         self.assertGreater(report["patches"], report["actor_patches"])
         self.assertGreater(report["actor_patches"], 0)

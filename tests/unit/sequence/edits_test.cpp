@@ -127,6 +127,27 @@ TEST(Edits, ALampIsDimmedPutOutAndLitAgain) {
     }
 }
 
+TEST(Edits, AStopWhileLampsAreFoundLeavesThemAsTheyWere) {
+    for (int reports_seen = 0; reports_seen < 3; ++reports_seen) {
+        Edited job;
+        std::stop_source stop;
+        int reports = 0;
+        const auto sink = [&](const Progress&) {
+            if (++reports > reports_seen) stop.request_stop();
+        };
+        if (reports_seen == 0) stop.request_stop();
+        try {
+            set_emission(job.state, "box", Rgb(3, 2, 1), Context(2, stop.get_token(), sink));
+            EXPECT_GT(reports_seen, 0);
+            continue;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::cancelled);
+        }
+        EXPECT_EQ(job.state.world().materials[2].emission, job.scene.materials[2].emission);
+        job.expect_as_new(3);
+    }
+}
+
 TEST(Edits, LampsWithoutSurfaceAreDimmedPutOutAndLitAgain) {
     Edited job(room_with_lamps());
     for (const float intensity : {0.2F, 0.0F, 5.0F}) {

@@ -39,9 +39,10 @@ TEST(Report, HasTheFieldsOfTheContractInOrder) {
     report.frames[1].line_noise = 0.02;
 
     const Json json = to_json(report, 12.5);
-    EXPECT_EQ(keys(json), (std::vector<std::string>{"scene", "method", "patches", "actor_patches",
-                                                    "sight_lines", "rays_per_patch", "load_ms", "static_ms",
-                                                    "precompute", "peak_rss_mb", "frames", "method_reason"}));
+    EXPECT_EQ(keys(json),
+              (std::vector<std::string>{"scene", "method", "patches", "actor_patches", "sight_lines",
+                                        "rays_per_patch", "load_ms", "static_ms", "precompute", "peak_rss_mb",
+                                        "frames", "made_for_error", "method_reason"}));
     EXPECT_EQ(keys(json["frames"][0]),
               (std::vector<std::string>{"frame", "ms", "rays_traced", "visibility_changes", "shots",
                                         "active_patches", "residual", "error_bound", "picture_error",
