@@ -166,7 +166,7 @@ def asked_summary(results):
             within = sum(j["error"][0] <= value for j in of_value)
             ratios = [j["seconds"] / j["best"][0] for j in of_value if j["best"]]
             cold = way == "asked"
-            rows.append([share(value), "a cold frame" if cold else "the ninth frame of a sequence", f"{within} of {len(of_value)}",
+            rows.append([share(value), "the first frame" if cold else "the ninth of a sequence begun later", f"{within} of {len(of_value)}",
                          number(max(j["error"][0] / value for j in of_value)),
                          number(statistics.median(ratios)) if ratios and cold else "", number(max(ratios)) if ratios and cold else "",
                          len(of_value) - len(ratios) if cold else ""])
