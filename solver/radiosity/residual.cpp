@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t rows_per_chunk = 512;
 // Rounds go on to this share of what is good enough, so that the exact survey after them is seldom the last
 // but one.
-constexpr double near_enough = 0.8;
+constexpr double near_enough = 0.85;
 // Rounds between two surveys that leave more than this share of the largest residual are too many.
 constexpr double little_progress = 0.7;
 // What the first solution is asked for, relative to what is asked: how far others' light may dim before what
@@ -34,7 +34,8 @@ double gain_of(const ResidualProblem& problem) {
 }
 
 /// Changes radiosity by the residuals and lets the rows know. What actors cover, and whole rows, learn of it
-/// in the end only, once for many rounds: that changes little of what is pushed.
+/// in the end only, once for many rounds: that changes little of what is pushed. Actors then answer before
+/// those who see them learn of anything, so that light goes to them and back between two surveys.
 class Pusher {
   public:
     Pusher(ResidualState& state, const ResidualProblem& problem, Surveyor& surveyor)
@@ -69,6 +70,7 @@ class Pusher {
             ++progress.rounds_made;
             largest = surveyor_.look_again(context);
         }
+        let_actors_answer(config.least_share * survey.enough, context);
         settle(context);
         return moved;
     }
@@ -143,6 +145,23 @@ class Pusher {
                        [&](Index row, float value) { add_light(by_light[row], value, change.v); });
         }
         return state_.pushes > before;
+    }
+
+    /// Whole rows hear of all pushes so far, and those that no column of the base knows, which are actors',
+    /// take up what that leaves.
+    void let_actors_answer(double threshold, const Context& context) {
+        const std::vector<DoubleLanes> before = state_.by_whole;
+        gather_whole(state_, problem_, context);
+        const auto& of_sight = problem_.matrix.sight_columns.column_begin;
+        const auto& of_light = problem_.matrix.light_columns.column_begin;
+        for (std::size_t k = 0; k < before.size(); ++k) {
+            const Index i = problem_.matrix.whole_rows[k];
+            if (of_sight[i] != of_sight[i + 1] || of_light[i] != of_light[i + 1]) continue;
+            const Lanes heard = to_single({state_.by_whole[k].v - before[k].v});
+            work_.residual[i].v += surveyor_.reflectance(i).v * heard.v;
+            if (static_cast<double>(surveyor_.magnitude(i, surveyor_.residual(i))) < threshold) continue;
+            if (is_any(take_up(i))) work_.is_pushed[i] = 1;
+        }
     }
 
     /// Adds what is on its way to the sums.

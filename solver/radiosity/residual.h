@@ -28,9 +28,9 @@ struct ResidualProblem {
 struct ResidualConfig {
     double asked_error = 0.02;  ///< certificate (error_bound) at which the solution is finished, above 0
     /// Patches whose residual exceeds this share of the largest one are pushed together, in (0, 1].
-    double push_share = 0.5;
+    double push_share = 0.25;
     /// Nothing is pushed whose residual is below this share of what would be good enough, in (0, 1].
-    double least_share = 0.5;
+    double least_share = 0.8;
     /// Rounds made before what actors cover hears of them and the residual is computed exactly, 1 or more.
     int rounds_between_surveys = 32;
     /// A round whose columns hold at least this share of all entries is made as a sweep: all patches are

@@ -30,9 +30,9 @@ Surveyor::Surveyor(ResidualState& state, const ResidualProblem& problem)
     work_.of_light.resize(rows);
     work_.magnitude.resize(rows);
     for (std::size_t i = 0; i < rows; ++i) {
-        const Lanes reflectance = with_fourth(problem.reflectance[i], max_channel(problem.reflectance[i]));
-        work_.of_sight[i].v = problem.matrix.sight.scale[i] * reflectance.v;
-        work_.of_light[i].v = problem.matrix.light.scale[i] * reflectance.v;
+        const Lanes of_patch = reflectance(i);
+        work_.of_sight[i].v = problem.matrix.sight.scale[i] * of_patch.v;
+        work_.of_light[i].v = problem.matrix.light.scale[i] * of_patch.v;
     }
     work_.place_of_whole.assign(rows, no_index);
     for (std::size_t k = 0; k < problem.matrix.whole_rows.size(); ++k)
@@ -80,6 +80,10 @@ double Surveyor::Part::amplification(double gain) const {
     return std::min(by_gain, (static_cast<double>(amplified) + fourth_rounding) / (1 - short_of));
 }
 
+Lanes Surveyor::reflectance(std::size_t i) const {
+    return with_fourth(problem_.reflectance[i], max_channel(problem_.reflectance[i]));
+}
+
 float Surveyor::magnitude(std::size_t i, const Lanes& residual) const {
     const float size = largest_channel(residual);
     if (state_.left.empty() || static_cast<double>(size) > enough_) return size;
@@ -94,10 +98,9 @@ Surveyor::Part Surveyor::look_at(std::size_t first, std::size_t last) {
         DoubleLanes::Vector sum = static_cast<double>(matrix.sight.scale[i]) * state_.by_sight[i].v +
                                   static_cast<double>(matrix.light.scale[i]) * state_.by_light[i].v;
         if (const Index k = work_.place_of_whole[i]; k != no_index) sum += state_.by_whole[k].v;
-        const Rgb& reflectance = problem_.reflectance[i];
         const Lanes::Vector irradiance =
             __builtin_convertvector(sum, Lanes::Vector) + to_lanes(problem_.external_irradiance[i]).v;
-        const Lanes::Vector reflected = with_fourth(reflectance, max_channel(reflectance)).v * irradiance;
+        const Lanes::Vector reflected = reflectance(i).v * irradiance;
         state_.irradiance[i] = to_rgb({irradiance});
         work_.residual[i].v = with_fourth(problem_.emission[i], 1).v + reflected - state_.radiosity[i].v;
         part.largest = std::max(part.largest, largest_channel(work_.residual[i]));

@@ -33,6 +33,12 @@ class Surveyor {
         return {r};
     }
 
+    /// ρ of a patch, and of its largest channel.
+    [[nodiscard]] Lanes reflectance(std::size_t i) const;
+
+    /// As Workspace::magnitude has it, of a residual.
+    [[nodiscard]] float magnitude(std::size_t i, const Lanes& residual) const;
+
     /// Something is on its way to the light layer, too, until the next `look`.
     void expect_from_lamps() { expects_from_lamps_ = true; }
     [[nodiscard]] bool expects_from_lamps() const { return expects_from_lamps_; }
@@ -49,8 +55,6 @@ class Surveyor {
         [[nodiscard]] double amplification(double gain) const;
     };
     Part look_at(std::size_t first, std::size_t last);
-    /// As Workspace::magnitude has it, of a residual.
-    [[nodiscard]] float magnitude(std::size_t i, const Lanes& residual) const;
 
     ResidualState& state_;
     const ResidualProblem& problem_;
