@@ -259,8 +259,10 @@ void Worker::compute_frame(const Job& job, Running& running, const Context& cont
     };
     const auto began = std::chrono::steady_clock::now();
     const FrameStatistics statistics = running.run->step(running.next_frame, sink, context);
-    jobs_.note_statistics(job.id, running.run->statistics());
+    // Warnings first: a job that is taken up again with what its statistics tell does not find all of them
+    // again.
     jobs_.note_warnings(job.id, running.run->warnings());
+    jobs_.note_statistics(job.id, running.run->statistics());
     if (final_picture) {
         final_picture->error_bound = statistics.error_bound;
         final_picture->seconds =

@@ -70,9 +70,11 @@ class Pusher {
             ++progress.rounds_made;
             largest = surveyor_.look_again(context);
         }
-        let_actors_answer(config.least_share * survey.enough, context);
+        const bool answered = let_actors_answer(config.least_share * survey.enough, context);
         settle(context);
-        return moved;
+        // Whole rows have heard of all but what they answered.
+        if (answered) gather_whole(state_, problem_, context);
+        return moved || answered;
     }
 
   private:
@@ -148,8 +150,9 @@ class Pusher {
     }
 
     /// Whole rows hear of all pushes so far, and those that no column of the base knows, which are actors',
-    /// take up what that leaves.
-    void let_actors_answer(double threshold, const Context& context) {
+    /// take up what that leaves. Returns whether any did.
+    bool let_actors_answer(double threshold, const Context& context) {
+        bool answered = false;
         const std::vector<DoubleLanes> before = state_.by_whole;
         gather_whole(state_, problem_, context);
         const auto& of_sight = problem_.matrix.sight_columns.column_begin;
@@ -160,11 +163,14 @@ class Pusher {
             const Lanes heard = to_single({state_.by_whole[k].v - before[k].v});
             work_.residual[i].v += surveyor_.reflectance(i).v * heard.v;
             if (static_cast<double>(surveyor_.magnitude(i, surveyor_.residual(i))) < threshold) continue;
-            if (is_any(take_up(i))) work_.is_pushed[i] = 1;
+            if (!is_any(take_up(i))) continue;
+            work_.is_pushed[i] = 1;
+            answered = true;
         }
+        return answered;
     }
 
-    /// Adds what is on its way to the sums.
+    /// Adds what is on its way to the sums of the layers.
     void settle(const Context& context) {
         const std::size_t blocks = problem_.matrix.sight.covered.size();
         context.for_chunks(blocks, rows_per_chunk / block_size, [&](std::size_t first, std::size_t last) {
@@ -175,7 +181,6 @@ class Pusher {
         });
         std::fill(work_.change.begin(), work_.change.end(), DoubleLanes{});
         std::fill(work_.is_pushed.begin(), work_.is_pushed.end(), std::uint8_t{0});
-        gather_whole(state_, problem_, context);
     }
 
     using BlockSums = std::array<DoubleLanes, block_size>;

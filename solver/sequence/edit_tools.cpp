@@ -8,13 +8,19 @@
 
 namespace afterglow {
 
+void renew_strategy(SequenceState::Parts& parts) {
+    const auto ahead = parts.strategy->work_ahead();
+    parts.earlier_work_ahead.insert(parts.earlier_work_ahead.end(), ahead.begin(), ahead.end());
+    parts.strategy = make_strategy(parts.config.visibility, parts.world, parts.clock());
+}
+
 void forget_frames(SequenceState::Parts& parts) {
     parts.kept_light.reset();
     parts.radiosity_before.clear();
     parts.kept_rows.reset();
     parts.picture = {};
     parts.visible_before.clear();
-    parts.strategy = make_strategy(parts.config.visibility, parts.world, parts.clock());
+    renew_strategy(parts);
 }
 
 EditOutcome begin_anew(SequenceState::Parts& parts, const Context& context) {

@@ -15,18 +15,30 @@ namespace afterglow {
 
 namespace {
 
-void set_lamps(SequenceState::Parts& parts, Lamps lamps, const Context& context) {
+void lay_lines_to(SequenceState::Parts& parts, Lamps lamps) {
     parts.lamps = std::move(lamps);
     lay_light_lines(parts);
-    parts.strategy = make_strategy(parts.config.visibility, parts.world, parts.clock());
+    renew_strategy(parts);
     parts.kept_light.reset();
     parts.kept_rows.reset();
     parts.picture = {};
+}
+
+/// Lays light lines to other lamps, and traces them. A stop leaves the lamps, and no background.
+void set_lamps(SequenceState::Parts& parts, Lamps lamps, const Context& context) {
+    const Lamps lamps_before = parts.lamps;
+    lay_lines_to(parts, std::move(lamps));
     if (parts.background.directions == 0) return;
     StaticLines& background = parts.background;
     background.light_contribution.assign(parts.visible.light_contribution.size(), 0);
-    trace_light_lines(*parts.light, *parts.sight, parts.caster, Scope::static_geometry,
-                      background.light_contribution, context);
+    try {
+        trace_light_lines(*parts.light, *parts.sight, parts.caster, Scope::static_geometry,
+                          background.light_contribution, context);
+    } catch (...) {
+        background = {};
+        lay_lines_to(parts, lamps_before);
+        throw;
+    }
     parts.background_key = static_key(parts.world, parts.mesh, *parts.sight, parts.lamps,
                                       parts.light->lines_per_patch(), parts.config.seed);
 }
@@ -53,7 +65,6 @@ EditOutcome set_emission(SequenceState& state, const std::string& material, cons
     } catch (...) {
         parts.world.materials[edited].emission = emission_before;
         parts.world.material_emission = tracks_before;
-        begin_anew(parts, Context(context.threads()));
         throw;
     }
 }
@@ -81,11 +92,11 @@ EditOutcome set_path(SequenceState& state, const std::string& actor, double from
     try {
         if (reaches_more(parts, context)) return begin_anew(parts, context);
         const auto ahead = parts.strategy->follow_path(parts.lines(0), edited, before, context);
-        if (!ahead) parts.strategy = make_strategy(parts.config.visibility, parts.world, parts.clock());
+        if (!ahead) renew_strategy(parts);
         return {1, ahead.value_or(0), true};
     } catch (...) {
         old = before;
-        begin_anew(parts, Context(context.threads()));
+        renew_strategy(parts);
         throw;
     }
 }

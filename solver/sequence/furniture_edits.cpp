@@ -110,6 +110,7 @@ EditOutcome refurnish(Parts& parts, const std::function<std::vector<Box>(World&)
         parts.world = std::move(world_before);
         parts.caster = RayCaster(parts.world);
         begin_anew(parts, Context(context.threads()));
+        parts.edited = true;
         throw;
     }
 }

@@ -71,6 +71,7 @@ struct SequenceState::Parts {
     StaticLines background;
     Hash128 background_key;
     std::unique_ptr<VisibilityStrategy> strategy;
+    std::vector<WorkAhead> earlier_work_ahead;  ///< of strategies that were replaced
     VisibleLines visible;
     /// Sight lines of the frame before whose changes are still to be counted; empty at first.
     std::vector<Index> visible_before;

@@ -147,8 +147,9 @@ Picture settled_picture(SequenceState::Parts& parts, std::optional<FrameRefineme
         const Context stage = context.part(done, end);
         done = end;
         Picture picture = finish(parts, *frame, publisher, stage);
-        if (!is_to_be_settled(parts) || !settle_error(parts, frame->probe(picture, stage), stage))
-            return picture;
+        if (!is_to_be_settled(parts)) return picture;
+        const ProbeEstimate& estimate = frame->probe(picture, stage);
+        if (!settle_error(parts, estimate, stage.part(settled_at, 1))) return picture;
         if (publisher.wants_preliminary())
             publisher.publish_preliminary(std::move(picture), frame->certificate().residual);
         const FrameStatistics earlier = frame->statistics();
@@ -231,8 +232,9 @@ FrameStatistics step(SequenceState& state, int frame_number, const RevisionSink&
     statistics.visibility_changes += count_changes(parts);
     ++parts.frames_shown;
     parts.edited = false;
+    parts.statistics.work_ahead = parts.earlier_work_ahead;
     const auto ahead = parts.strategy->work_ahead();
-    parts.statistics.work_ahead.assign(ahead.begin(), ahead.end());
+    parts.statistics.work_ahead.insert(parts.statistics.work_ahead.end(), ahead.begin(), ahead.end());
     statistics.total = watch.elapsed() - (parts.statistics.outside_frames() - outside_before);
     context.report(1, "frame finished");
     return statistics;

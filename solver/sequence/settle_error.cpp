@@ -5,6 +5,7 @@
 #include <sstream>
 #include <utility>
 
+#include "solver/base/error.h"
 #include "solver/sequence/asked_error.h"
 #include "solver/sequence/choose.h"
 #include "solver/sequence/edit_tools.h"
@@ -37,11 +38,16 @@ void warn_of_large_error(SequenceState::Parts& parts, const ProbeEstimate& estim
     parts.warnings.push_back({"error", text.str()});
 }
 
-/// Divides the world anew. A stop leaves it as it was.
-void make_finer(SequenceState::Parts& parts, double error, const Context& context) {
+/// Divides the world anew. A stop leaves it as it was, and so does what takes too many patches: then false.
+bool make_finer(SequenceState::Parts& parts, double error, const Context& context) {
     const auto before = std::exchange(parts.config.asked_error, error);
     try {
         begin_anew(parts, context);
+        return true;
+    } catch (const Error& failed) {
+        parts.config.asked_error = before;
+        if (failed.kind() == ErrorKind::too_large) return false;
+        throw;
     } catch (...) {
         parts.config.asked_error = before;
         throw;
@@ -65,7 +71,7 @@ FrameStatistics settle_with_pictures(SequenceState::Parts& parts, const Context&
         const Picture picture = frame.final_picture(stage);
         const ProbeEstimate estimate = frame.probe(picture, stage);
         cost = frame.statistics();
-        settle_error(parts, estimate, stage);
+        settle_error(parts, estimate, stage.part(settled_at, 1));
     }
     return cost;
 }
@@ -99,8 +105,7 @@ bool is_to_be_settled(const SequenceState::Parts& parts) {
 bool settle_error(SequenceState::Parts& parts, const ProbeEstimate& estimate, const Context& context) {
     const double asked = parts.settling->asked, made_for = *parts.config.asked_error;
     const double finer = error_to_make_for(asked, made_for, estimate);
-    if (finer < made_for && parts.settling->tries_left > 0) {
-        make_finer(parts, finer, context);
+    if (finer < made_for && parts.settling->tries_left > 0 && make_finer(parts, finer, context)) {
         --parts.settling->tries_left;
         return true;
     }

@@ -1,6 +1,8 @@
 #include "solver/sequence/edits.h"
 
+#include <functional>
 #include <random>
+#include <stop_token>
 
 #include <gmock/gmock.h>
 
@@ -127,25 +129,45 @@ TEST(Edits, ALampIsDimmedPutOutAndLitAgain) {
     }
 }
 
-TEST(Edits, AStopWhileLampsAreFoundLeavesThemAsTheyWere) {
-    for (int reports_seen = 0; reports_seen < 3; ++reports_seen) {
+/// Makes an edit of jobs of its own, stopped at each of its first reports in turn and, once, before all of
+/// them, and looks at what each is then.
+void expect_stops_change_nothing(const std::function<void(Edited&, const Context&)>& edit) {
+    int stopped = 0;
+    for (int reports_seen = 0; reports_seen < 4; ++reports_seen) {
         Edited job;
+        const std::size_t patches = job.state.statistics().patches;
         std::stop_source stop;
         int reports = 0;
         const auto sink = [&](const Progress&) {
-            if (++reports > reports_seen) stop.request_stop();
+            if (++reports >= reports_seen) stop.request_stop();
         };
         if (reports_seen == 0) stop.request_stop();
         try {
-            set_emission(job.state, "box", Rgb(3, 2, 1), Context(2, stop.get_token(), sink));
-            EXPECT_GT(reports_seen, 0);
+            edit(job, Context(2, stop.get_token(), sink));
             continue;
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::cancelled);
         }
-        EXPECT_EQ(job.state.world().materials[2].emission, job.scene.materials[2].emission);
+        ++stopped;
         job.expect_as_new(3);
+        EXPECT_EQ(job.state.statistics().patches, patches);
+        // It can still be done.
+        edit(job, Context(2));
     }
+    EXPECT_GT(stopped, 0);
+}
+
+TEST(Edits, AStopWhileLampsAreFoundLeavesThemAsTheyWere) {
+    expect_stops_change_nothing(
+        [](Edited& job, const Context& context) { set_emission(job.state, "box", Rgb(3, 2, 1), context); });
+}
+
+TEST(Edits, AStopLeavesAnActorOnItsPath) {
+    expect_stops_change_nothing([](Edited& job, const Context& context) {
+        const Body& actor = job.scene.bodies[1];
+        const Path still{{{0.0, actor.path.keys.front().value}}};
+        set_path(job.state, actor.name, 0.1, still, context);
+    });
 }
 
 TEST(Edits, LampsWithoutSurfaceAreDimmedPutOutAndLitAgain) {
