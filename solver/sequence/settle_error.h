@@ -27,8 +27,9 @@ bool is_to_be_settled(const SequenceState::Parts& parts);
 
 /// Takes what probes say of the picture of time 0. Where that is too far off, divides the world into finer
 /// patches, lays their lines, forgets what was solved and returns true: the picture is to be made again.
-/// Where that takes more patches than there may be, it is as if nothing finer were known. A job whose pictures
-/// may stay farther off than asked gets a warning. Errors: cancelled, which leaves the question open.
+/// Where that takes more patches than there may be, it is as if nothing finer were known. A job whose
+/// pictures may stay farther off than asked gets a warning. Errors: cancelled, which leaves the question
+/// open.
 bool settle_error(SequenceState::Parts& parts, const ProbeEstimate& estimate, const Context& context);
 
 /// The same for a job that begins with another frame, so that parts of an animation computed apart by the
