@@ -46,7 +46,6 @@ class PacketRenderer {
         count_ = static_cast<std::size_t>(right - left);
         for (PixelSum& pixel : pixels.first(count_)) pixel.clear();
         for (std::size_t k = 0; k < static_cast<std::size_t>(config_.samples_per_pixel); ++k) {
-            count_ = static_cast<std::size_t>(right - left);
             for (std::size_t lane = 0; lane < count_; ++lane)
                 lane_[lane] = {left + static_cast<int>(lane), y, k};
             take_samples();

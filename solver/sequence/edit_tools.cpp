@@ -14,13 +14,17 @@ void renew_strategy(SequenceState::Parts& parts) {
     parts.strategy = make_strategy(parts.config.visibility, parts.world, parts.clock());
 }
 
-void forget_frames(SequenceState::Parts& parts) {
+void forget_solution(SequenceState::Parts& parts) {
+    renew_strategy(parts);
     parts.kept_light.reset();
-    parts.radiosity_before.clear();
     parts.kept_rows.reset();
     parts.picture = {};
+}
+
+void forget_frames(SequenceState::Parts& parts) {
+    forget_solution(parts);
+    parts.radiosity_before.clear();
     parts.visible_before.clear();
-    renew_strategy(parts);
 }
 
 EditOutcome begin_anew(SequenceState::Parts& parts, const Context& context) {

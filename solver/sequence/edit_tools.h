@@ -9,6 +9,9 @@ namespace afterglow {
 /// A strategy that knows nothing yet.
 void renew_strategy(SequenceState::Parts& parts);
 
+/// What is known of lines that move, of light and of the picture is of no more use.
+void forget_solution(SequenceState::Parts& parts);
+
 /// What followed from frame to frame, lines' backgrounds apart, is of no more use.
 void forget_frames(SequenceState::Parts& parts);
 

@@ -18,10 +18,7 @@ namespace {
 void lay_lines_to(SequenceState::Parts& parts, Lamps lamps) {
     parts.lamps = std::move(lamps);
     lay_light_lines(parts);
-    renew_strategy(parts);
-    parts.kept_light.reset();
-    parts.kept_rows.reset();
-    parts.picture = {};
+    forget_solution(parts);
 }
 
 /// Lays light lines to other lamps, and traces them. A stop leaves the lamps, and no background.

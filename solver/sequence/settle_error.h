@@ -5,7 +5,7 @@
 
 // An asked error held against a picture. Tables know what most scenes need (see level_for_error); in some,
 // light comes from few small bright places, and lines and samples that are enough elsewhere are not. So the
-// picture of time 0 is probed once, and where it seems farther off than asked everything is made finer.
+// picture of time 0 is probed, and where it seems farther off than asked everything is made finer.
 
 namespace afterglow {
 
